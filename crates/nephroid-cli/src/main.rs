@@ -1,0 +1,3 @@
+//! The command `nephroid`.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Files to and from the types of `nephroid`: scenes in, images out, errors that point.

@@ -1,0 +1,6 @@
+//! Colour: linear RGB with the primaries of sRGB.
+
+mod rgb;
+pub mod srgb;
+
+pub use rgb::Rgb;

@@ -1,0 +1,38 @@
+//! The film: exact sums of radiance, reconstruction filters and tone mapping.
+
+mod filter;
+
+pub use filter::Filter;
+
+/// Size and sampling of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmSettings {
+    /// Pixels in a row of the whole picture.
+    pub width: u32,
+    /// Rows of the whole picture.
+    pub height: u32,
+    /// The part that is rendered, if not all.
+    pub crop: Option<Crop>,
+    /// Reconstruction filter.
+    pub filter: Filter,
+}
+
+/// A window of the whole picture, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl FilmSettings {
+    /// The window that is rendered.
+    pub fn window(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}

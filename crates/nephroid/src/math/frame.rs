@@ -1,0 +1,62 @@
+use super::Vec3;
+
+/// An orthonormal basis around a unit normal: local directions have `z` along the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// First tangent.
+    pub s: Vec3,
+    /// Second tangent.
+    pub t: Vec3,
+    /// The normal.
+    pub n: Vec3,
+}
+
+impl Frame {
+    /// The frame of a unit normal, with tangents of no particular orientation.
+    #[inline]
+    pub fn from_normal(n: Vec3) -> Self {
+        let (s, t) = orthonormal_pair(n);
+        Self { s, t, n }
+    }
+
+    /// World direction to local.
+    #[inline]
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
+    }
+
+    /// Local direction to world.
+    #[inline]
+    pub fn to_world(&self, v: Vec3) -> Vec3 {
+        self.s * v.x + self.t * v.y + self.n * v.z
+    }
+}
+
+/// Two unit vectors that form a right-handed basis with the unit vector `n`, without a branch on
+/// its direction (Duff et al. 2017, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), listing 3).
+#[inline]
+pub fn orthonormal_pair(n: Vec3) -> (Vec3, Vec3) {
+    let sign = 1.0f32.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Vec2, warp};
+
+    #[test]
+    fn frames_are_orthonormal_and_right_handed() {
+        for i in 0..1000 {
+            let u = Vec2::new((i as f32 * 0.618_034).fract(), i as f32 / 1000.0);
+            let n = warp::square_to_sphere(u);
+            let f = Frame::from_normal(n);
+            assert!(f.s.dot(f.t).abs() < 1e-6 && f.s.dot(n).abs() < 1e-6);
+            assert!((f.s.cross(f.t) - n).length() < 1e-6);
+            let v = Vec3::new(0.3, -0.5, 0.8);
+            assert!((f.to_local(f.to_world(v)) - v).length() < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Maps from the unit square to other domains, with their densities: `square_to_x`, `x_to_square`
+//! (the inverse) and `square_to_x_pdf` (with respect to area or solid angle of the target).
+
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use super::real::{atan2, cos, sin_cos};
+use super::{Vec2, Vec3};
+
+/// Uniform on the unit disk, by concentric squares (Shirley and Chiu 1997).
+#[inline]
+pub fn square_to_disk(u: Vec2) -> Vec2 {
+    let v = 2.0 * u - Vec2::ONE;
+    if v == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    let (r, phi) = if v.x.abs() > v.y.abs() {
+        (v.x, FRAC_PI_4 * (v.y / v.x))
+    } else {
+        (v.y, FRAC_PI_2 - FRAC_PI_4 * (v.x / v.y))
+    };
+    let (sin, cos) = sin_cos(phi);
+    Vec2::new(r * cos, r * sin)
+}
+
+/// Density of [`square_to_disk`] per unit area.
+#[inline]
+pub fn square_to_disk_pdf(p: Vec2) -> f32 {
+    if p.length_squared() <= 1.0 { 1.0 / PI } else { 0.0 }
+}
+
+/// Uniform on the unit sphere: `z = 1 − 2u`, the *solid-angle sampling* of the 2019 report in the
+/// form whose density is 1/4π everywhere (its latitude is `asin`, its range corrected).
+#[inline]
+pub fn square_to_sphere(u: Vec2) -> Vec3 {
+    let z = 1.0 - 2.0 * u.x;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let (sin, cos) = sin_cos(2.0 * PI * u.y);
+    Vec3::new(r * cos, r * sin, z)
+}
+
+/// Density of [`square_to_sphere`] per unit solid angle.
+pub const SPHERE_PDF: f32 = 0.25 / PI;
+
+/// Inverse of [`square_to_sphere`].
+#[inline]
+pub fn sphere_to_square(w: Vec3) -> Vec2 {
+    let phi = atan2(w.y, w.x) / (2.0 * PI);
+    Vec2::new((1.0 - w.z) * 0.5, if phi < 0.0 { phi + 1.0 } else { phi })
+}
+
+/// Cosine-weighted on the hemisphere about `+z` (Malley's method).
+#[inline]
+pub fn square_to_cosine_hemisphere(u: Vec2) -> Vec3 {
+    let d = square_to_disk(u);
+    Vec3::new(d.x, d.y, (1.0 - d.length_squared()).max(0.0).sqrt())
+}
+
+/// Density of [`square_to_cosine_hemisphere`] per unit solid angle, for a local direction.
+#[inline]
+pub fn square_to_cosine_hemisphere_pdf(w: Vec3) -> f32 {
+    w.z.max(0.0) / PI
+}
+
+/// Uniform in the cone of directions within an angle of `+z`, given by its cosine.
+#[inline]
+pub fn square_to_cone(u: Vec2, cos_max: f32) -> Vec3 {
+    // Written in 1 − cos so that narrow cones keep their precision.
+    let one_minus_cos = u.x * (1.0 - cos_max);
+    let z = 1.0 - one_minus_cos;
+    let r = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+    let (sin, cos) = sin_cos(2.0 * PI * u.y);
+    Vec3::new(r * cos, r * sin, z)
+}
+
+/// Density of [`square_to_cone`] per unit solid angle inside the cone.
+#[inline]
+pub fn square_to_cone_pdf(cos_max: f32) -> f32 {
+    1.0 / (2.0 * PI * (1.0 - cos_max))
+}
+
+/// Density ∝ cosⁿ about `+z` on the hemisphere (Lafortune and Willems 1994).
+#[inline]
+pub fn square_to_cosine_power(u: Vec2, exponent: f32) -> Vec3 {
+    let z = super::real::pow(u.x, 1.0 / (exponent + 1.0));
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let phi = 2.0 * PI * u.y;
+    Vec3::new(r * cos(phi), r * cos(phi - FRAC_PI_2), z)
+}
+
+/// Density of [`square_to_cosine_power`] per unit solid angle, for a local direction.
+#[inline]
+pub fn square_to_cosine_power_pdf(cos_theta: f32, exponent: f32) -> f32 {
+    if cos_theta <= 0.0 {
+        return 0.0;
+    }
+    (exponent + 1.0) / (2.0 * PI) * super::real::pow(cos_theta, exponent)
+}
+
+/// Uniform on a triangle: barycentric weights of its second and third vertex (Heitz 2019,
+/// *A Low-Distortion Map Between Triangle and Square*).
+#[inline]
+pub fn square_to_triangle(u: Vec2) -> Vec2 {
+    if u.y > u.x {
+        let x = u.x * 0.5;
+        Vec2::new(x, u.y - x)
+    } else {
+        let y = u.y * 0.5;
+        Vec2::new(u.x - y, y)
+    }
+}

@@ -1,0 +1,29 @@
+//! A scene: plain data, after references, units and defaults of its file are resolved.
+
+use crate::camera::Camera;
+use crate::film::FilmSettings;
+use crate::handle::Arena;
+use crate::light::Light;
+use crate::material::Material;
+use crate::shape::{Mesh, Shape};
+use crate::texture::Textures;
+
+/// Everything a picture is made of. Build it by hand or read it from a file, then give it to
+/// `World::new`, which finds every problem it has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The viewpoint.
+    pub camera: Camera,
+    /// The picture.
+    pub film: FilmSettings,
+    /// Textures and images.
+    pub textures: Textures,
+    /// Materials.
+    pub materials: Arena<Material>,
+    /// Triangle meshes.
+    pub meshes: Arena<Mesh>,
+    /// Surfaces.
+    pub shapes: Vec<Shape>,
+    /// Lights without a surface.
+    pub lights: Vec<Light>,
+}

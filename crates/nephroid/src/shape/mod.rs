@@ -1,0 +1,58 @@
+//! Shapes: what a scene's surfaces are made of.
+
+mod mesh;
+
+pub use mesh::Mesh;
+
+use crate::handle::Handle;
+use crate::material::Material;
+use crate::math::{Transform, Vec3};
+use crate::texture::Texture;
+
+/// A surface of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// What messages and the ledger call it.
+    pub name: String,
+    /// Its form, in its own space.
+    pub geometry: Geometry,
+    /// Its place.
+    pub to_world: Transform,
+    /// How it scatters.
+    pub material: Handle<Material>,
+    /// The radiance it emits on the side its normal points to, in W/(m²·sr); uniform in direction.
+    pub emission: Option<Handle<Texture>>,
+    /// Turns the normal around.
+    pub flip_normals: bool,
+}
+
+/// The form of a shape in its own space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Geometry {
+    /// Normal outward. Its transform must scale uniformly.
+    Sphere {
+        /// Centre.
+        center: Vec3,
+        /// Radius.
+        radius: f32,
+    },
+    /// [-1, 1]² in the plane z = 0, normal +z, `uv` from (0, 0) at (-1, -1).
+    Rectangle,
+    /// The unit disk in the plane z = 0, normal +z, `uv` = (radius, angle / 2π).
+    Disk,
+    /// The curved side of a cylinder, without caps, normal outward. Its transform must scale uniformly.
+    Cylinder {
+        /// One end of the axis.
+        p0: Vec3,
+        /// The other.
+        p1: Vec3,
+        /// Radius.
+        radius: f32,
+    },
+    /// The surface of [-1, 1]³, normals outward.
+    Cube,
+    /// All of the plane z = 0, normal +z. Counts in no bounds and cannot emit.
+    Plane,
+    /// Triangles.
+    Mesh(Handle<Mesh>),
+}
