@@ -1,5 +1,6 @@
 //! Photon mapping: a renderer for caustics, light through glass and water, and light in fog.
 
+mod bvh;
 pub mod camera;
 pub mod color;
 pub mod film;
@@ -7,6 +8,7 @@ pub mod handle;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod sampling;
 pub mod scene;
 pub mod shape;
 pub mod texture;
