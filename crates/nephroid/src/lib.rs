@@ -12,3 +12,4 @@ pub mod sampling;
 pub mod scene;
 pub mod shape;
 pub mod texture;
+pub mod world;

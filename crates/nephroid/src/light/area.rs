@@ -1,6 +1,6 @@
 use std::f32::consts::PI;
 
-use super::emitter::{Emission, Incident, Lookup};
+use super::emitter::{Emission, Incident, Lookup, Source};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Frame, Ray, Vec2, Vec3, warp};
@@ -67,7 +67,7 @@ impl AreaEmitter {
             radiance: lookup.textures.eval(self.radiance, point.uv),
             pdf_solid_angle,
             dirac: false,
-            source: Some(point.position),
+            source: Source::Surface(point),
         })
     }
 
@@ -89,7 +89,7 @@ impl AreaEmitter {
             Frame::from_normal(point.ng).to_world(warp::square_to_cosine_hemisphere(u_direction));
         Emission {
             ray: Ray::new(point.position, direction),
-            surface: Some((point.ng, point.error)),
+            surface: Some(point),
             power: lookup.textures.eval(self.radiance, point.uv) * (PI * self.area),
         }
     }

@@ -17,8 +17,19 @@ pub struct Incident {
     pub pdf_solid_angle: f32,
     /// Whether only this direction could have been sampled.
     pub dirac: bool,
-    /// Where the light comes from; `None` from infinitely far away.
-    pub source: Option<Vec3>,
+    /// Where it comes from.
+    pub source: Source,
+}
+
+/// Where sampled light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// Infinitely far away.
+    Infinity,
+    /// A point without a surface.
+    Point(Vec3),
+    /// A point of a surface.
+    Surface(SurfacePoint),
 }
 
 /// The start of a photon path.
@@ -26,8 +37,8 @@ pub struct Incident {
 pub struct Emission {
     /// From the light.
     pub ray: Ray,
-    /// Geometric normal of an area light and the error of the ray's start, to leave it by.
-    pub surface: Option<(Vec3, Vec3)>,
+    /// The point of an area light that the path must be moved off.
+    pub surface: Option<SurfacePoint>,
     /// Emitted power over the density of the sample, in W: its mean is the emitter's power.
     pub power: Rgb,
 }
@@ -98,15 +109,15 @@ impl Emitter {
             EmitterKind::Point { position, intensity } => {
                 let to_light = *position - p;
                 let distance_sq = to_light.length_squared();
-                dirac(to_light.try_normalize()?, *intensity / distance_sq, Some(*position))
+                dirac(to_light.try_normalize()?, *intensity / distance_sq, Source::Point(*position))
             }
             EmitterKind::Spot(spot) => {
                 let to_light = spot.position - p;
                 let wi = to_light.try_normalize()?;
                 let intensity = spot.intensity(lookup.textures, -wi);
-                dirac(wi, intensity / to_light.length_squared(), Some(spot.position))
+                dirac(wi, intensity / to_light.length_squared(), Source::Point(spot.position))
             }
-            EmitterKind::Directional { direction, irradiance, .. } => dirac(-*direction, *irradiance, None),
+            EmitterKind::Directional { direction, irradiance, .. } => dirac(-*direction, *irradiance, Source::Infinity),
             EmitterKind::Constant(sky) => Some(sky.sample_incident(u)),
             EmitterKind::Environment(map) => map.sample_incident(lookup.textures, u),
         }
@@ -179,7 +190,7 @@ impl Emitter {
     }
 }
 
-fn dirac(wi: Vec3, irradiance: Rgb, source: Option<Vec3>) -> Option<Incident> {
+fn dirac(wi: Vec3, irradiance: Rgb, source: Source) -> Option<Incident> {
     (!irradiance.is_black() && irradiance.is_finite()).then_some(Incident {
         wi,
         radiance: irradiance,

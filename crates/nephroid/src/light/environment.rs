@@ -1,6 +1,6 @@
 use std::f32::consts::PI;
 
-use super::emitter::{Emission, Incident, Target};
+use super::emitter::{Emission, Incident, Source, Target};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::real::{acos, atan2, sin_cos};
@@ -156,5 +156,5 @@ fn texel(image: &Image, x: i64, y: i64) -> Rgb {
 }
 
 fn incident(wi: Vec3, radiance: Rgb, pdf_solid_angle: f32) -> Incident {
-    Incident { wi, radiance, pdf_solid_angle, dirac: false, source: None }
+    Incident { wi, radiance, pdf_solid_angle, dirac: false, source: Source::Infinity }
 }

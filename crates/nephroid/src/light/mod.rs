@@ -7,7 +7,7 @@ mod environment;
 mod spot;
 
 pub(crate) use area::AreaEmitter;
-pub use emitter::{Emission, Incident, SphereSampling};
+pub use emitter::{Emission, Incident, Source, SphereSampling};
 pub(crate) use emitter::{Emitter, EmitterKind, Lookup, Target};
 pub(crate) use environment::{ConstantSky, EnvironmentMap};
 pub(crate) use spot::Spot;
