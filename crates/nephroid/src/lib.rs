@@ -7,6 +7,7 @@ pub mod handle;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod photon_map;
 pub mod scene;
 pub mod shape;
 pub mod texture;
