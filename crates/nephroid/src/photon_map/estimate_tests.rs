@@ -1,0 +1,1 @@
+//! Estimates where the answer is known.
