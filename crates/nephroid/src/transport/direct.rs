@@ -107,11 +107,13 @@ fn sample_bsdf(
     let (u, u_lobe) = (sampler.next_2d(), sampler.next_1d());
     let Some(sample) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { return Rgb::BLACK };
     let mut ray = leave(point, sample.wi);
+    let mut seen = Rgb::BLACK;
     loop {
         let Some(hit) = world.intersect(&ray) else {
-            return sample.weight * sky_by_bsdf(world, sample.wi, sample.pdf_solid_angle, lights);
+            seen += sky_by_bsdf(world, sample.wi, sample.pdf_solid_angle, lights);
+            return sample.weight * seen;
         };
-        let seen = world.emitted(&hit, -ray.direction).map_or(Rgb::BLACK, |(light, radiance)| {
+        seen += world.emitted(&hit, -ray.direction).map_or(Rgb::BLACK, |(light, radiance)| {
             let pdf = light_pdf(world, light, point.position, &hit.point, lights);
             radiance * power_heuristic(sample.pdf_solid_angle, pdf)
         });

@@ -59,7 +59,7 @@ pub struct MapPlan {
 pub(crate) struct PhotonPass {
     pub global: Photons,
     pub caustic: Photons,
-    /// The books of the paths for the global map, in W.
+    /// The books of the paths for the global map, as sums over them.
     pub ledger: Ledger,
 }
 
@@ -213,5 +213,5 @@ fn emit(
         photons.append(&mut stored);
         ledger.append(&books);
     }
-    Some((Photons::new(paths, photons), ledger.per_path()))
+    Some((Photons::new(paths, photons), ledger))
 }
