@@ -159,8 +159,7 @@ impl<'w> Session<'w> {
     ) -> bool {
         let world = self.world;
         if self.maps.is_none() {
-            let built =
-                Maps::build(world, config, &self.plan, self.settings.seed, self.iteration, observer);
+            let built = Maps::build(world, config, &self.plan, self.settings.seed, self.iteration, observer);
             let Some(maps) = built else { return false };
             self.count(&maps);
             self.maps = Some(maps);

@@ -85,8 +85,7 @@ impl AreaEmitter {
     /// Uniform over the surface, cosine-distributed about its normal.
     pub fn emit(&self, lookup: Lookup<'_>, u_position: Vec2, u_direction: Vec2) -> Emission {
         let point = self.sample_point(lookup, u_position);
-        let direction =
-            Frame::from_normal(point.ng).to_world(warp::square_to_cosine_hemisphere(u_direction));
+        let direction = Frame::from_normal(point.ng).to_world(warp::square_to_cosine_hemisphere(u_direction));
         Emission {
             ray: Ray::new(point.position, direction),
             surface: Some(point),

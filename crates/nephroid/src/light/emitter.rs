@@ -117,7 +117,9 @@ impl Emitter {
                 let intensity = spot.intensity(lookup.textures, -wi);
                 dirac(wi, intensity / to_light.length_squared(), Source::Point(spot.position))
             }
-            EmitterKind::Directional { direction, irradiance, .. } => dirac(-*direction, *irradiance, Source::Infinity),
+            EmitterKind::Directional { direction, irradiance, .. } => {
+                dirac(-*direction, *irradiance, Source::Infinity)
+            }
             EmitterKind::Constant(sky) => Some(sky.sample_incident(u)),
             EmitterKind::Environment(map) => map.sample_incident(lookup.textures, u),
         }
@@ -148,14 +150,6 @@ impl Emitter {
             EmitterKind::Environment(map) => map.radiance(textures, direction),
             _ => Rgb::BLACK,
         }
-    }
-
-    /// Whether it only ever lights a point from one direction, so that no ray can meet it.
-    pub fn is_dirac(&self) -> bool {
-        matches!(
-            self.kind,
-            EmitterKind::Point { .. } | EmitterKind::Spot(_) | EmitterKind::Directional { .. }
-        )
     }
 
     /// Whether rays that meet nothing see it.

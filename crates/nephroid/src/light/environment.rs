@@ -65,7 +65,8 @@ impl EnvironmentMap {
                 let mut neighbourhood = 0.0;
                 for dy in -1..=1 {
                     for dx in -1..=1 {
-                        neighbourhood += f64::from(texel(pixels, i64::from(x) + dx, i64::from(y) + dy).mean());
+                        neighbourhood +=
+                            f64::from(texel(pixels, i64::from(x) + dx, i64::from(y) + dy).mean());
                     }
                 }
                 weights.push(neighbourhood * f64::from(sin_theta));
@@ -141,11 +142,7 @@ impl EnvironmentMap {
                 surface: None,
                 power: from.radiance * (self.target.silhouette() / from.pdf_solid_angle),
             },
-            None => Emission {
-                ray: self.target.ray(Vec3::Z, u_position),
-                surface: None,
-                power: Rgb::BLACK,
-            },
+            None => Emission { ray: self.target.ray(Vec3::Z, u_position), surface: None, power: Rgb::BLACK },
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::camera::Projection;
 use crate::color::Rgb;
 use crate::film::Filter;
 use crate::light::LightKind;
+use crate::material;
 use crate::math::Transform;
 use crate::shape::{Geometry, Mesh};
 use crate::texture::Texture;
@@ -56,10 +57,8 @@ fn check_film(scene: &Scene, problems: &mut Problems) {
     let film = scene.film;
     let sides = [film.width, film.height];
     if sides.iter().any(|s| !(1..=MAX_SIDE).contains(s)) {
-        let message = format!(
-            "{} by {} pixels: each side must be between 1 and {MAX_SIDE}",
-            film.width, film.height
-        );
+        let message =
+            format!("{} by {} pixels: each side must be between 1 and {MAX_SIDE}", film.width, film.height);
         problems.add(Subject::Film, message);
     }
     if let Some(crop) = film.crop {
@@ -84,7 +83,8 @@ fn check_film(scene: &Scene, problems: &mut Problems) {
 fn check_textures(scene: &Scene, problems: &mut Problems) {
     for (i, image) in scene.textures.images.iter().enumerate() {
         let subject = Subject::Image(i);
-        if image.pixels.is_empty() || image.pixels.len() as u64 != u64::from(image.width) * u64::from(image.height)
+        if image.pixels.is_empty()
+            || image.pixels.len() as u64 != u64::from(image.width) * u64::from(image.height)
         {
             problems.add(subject, "the image is empty or its size does not fit its pixels");
         }
@@ -97,9 +97,7 @@ fn check_textures(scene: &Scene, problems: &mut Problems) {
         let sound = match texture {
             Texture::Constant(value) => value.is_finite(),
             Texture::Bitmap(b) => scene.textures.images.contains(b.image) && b.to_uv.is_finite(),
-            Texture::Checkerboard(c) => {
-                c.color0.index() < i && c.color1.index() < i && c.to_uv.is_finite()
-            }
+            Texture::Checkerboard(c) => c.color0.index() < i && c.color1.index() < i && c.to_uv.is_finite(),
         };
         if !sound {
             problems.add(
@@ -111,8 +109,8 @@ fn check_textures(scene: &Scene, problems: &mut Problems) {
 }
 
 fn check_materials(scene: &Scene, problems: &mut Problems) {
-    for (handle, material) in scene.materials.iter_handles() {
-        for message in material.problems(handle, scene) {
+    for (handle, _) in scene.materials.iter_handles() {
+        for message in material::check(&scene.materials, handle, &scene.textures) {
             problems.add(Subject::Material(handle.index()), message);
         }
     }
@@ -211,7 +209,10 @@ fn check_lights(scene: &Scene, problems: &mut Problems) {
                 check_transform(to_world, subject, problems);
                 check_light_value(*intensity, "intensity", subject, problems);
                 if !(*cutoff_deg > 0.0 && *cutoff_deg < 90.0) {
-                    problems.add(subject, format!("a cutoff angle of {cutoff_deg}: write one between 0 and 90 degrees"));
+                    problems.add(
+                        subject,
+                        format!("a cutoff angle of {cutoff_deg}: write one between 0 and 90 degrees"),
+                    );
                 }
                 if !(*beam_width_deg >= 0.0 && beam_width_deg <= cutoff_deg) {
                     problems.add(subject, "the beam width must lie between 0 and the cutoff angle");

@@ -51,7 +51,7 @@ impl Cylinder {
             return None;
         }
         let q = b + discriminant.sqrt().copysign(b);
-        let (near, far) = if b >= 0.0 { (c / q, q / a) } else { (q / a, c / q) };
+        let (near, far) = if q > 0.0 { (c / q, q / a) } else { (q / a, c / q) };
         // From inside (c ≤ 0) the near root is the surface being left.
         let roots = if c > 0.0 { [near, far] } else { [far, f32::NAN] };
         roots.into_iter().find_map(|t| {

@@ -37,7 +37,7 @@ impl Sphere {
             return None;
         }
         let q = b + discriminant.sqrt().copysign(b);
-        let (near, far) = if b >= 0.0 { (c / q, q / a) } else { (q / a, c / q) };
+        let (near, far) = if q > 0.0 { (c / q, q / a) } else { (q / a, c / q) };
         let t = if c > 0.0 { near } else { far };
         (t > 0.0 && t < ray.t_max).then_some(Intersection { t, u: 0.0, v: 0.0 })
     }

@@ -65,7 +65,12 @@ pub(crate) struct PhotonPass {
 
 impl PhotonPlan {
     /// Traces trial paths, with a stream of their own, and plans for the targets.
-    pub(crate) fn by_pilot(world: &World, settings: &WalkSettings, targets: &PhotonTargets, seed: u64) -> Self {
+    pub(crate) fn by_pilot(
+        world: &World,
+        settings: &WalkSettings,
+        targets: &PhotonTargets,
+        seed: u64,
+    ) -> Self {
         let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
         let nothing_stored = too_short && !targets.store_direct;
         if world.lights_by_power().is_none() || nothing_stored {

@@ -51,7 +51,12 @@ pub(super) enum Next {
 }
 
 /// The start of path `path`: the light, the ray, and the power in W as if the path were alone.
-fn start(world: &World, settings: &WalkSettings, path: u64, sampler: &mut Sampler) -> Option<(usize, Ray, Rgb)> {
+fn start(
+    world: &World,
+    settings: &WalkSettings,
+    path: u64,
+    sampler: &mut Sampler,
+) -> Option<(usize, Ray, Rgb)> {
     let table = world.lights_by_power()?;
     let (u_direction, u_position, u_light) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
     let (light, probability) = match settings.light_choice {
@@ -158,7 +163,11 @@ pub(super) fn walk(
         let survivor = scattered / q;
         take(&mut roulette, scattered - survivor);
         power = survivor;
-        if sample.dirac { specular += 1 } else { other += 1 }
+        if sample.dirac {
+            specular += 1;
+        } else {
+            other += 1;
+        }
         ray = leave(&hit.point, sample.wi);
     }
     book.roulette(roulette);

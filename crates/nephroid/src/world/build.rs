@@ -2,7 +2,9 @@ use super::World;
 use crate::bvh::Bvh;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
-use crate::light::{AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Light, LightKind, Spot, Target};
+use crate::light::{
+    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Light, LightKind, Spot, Target,
+};
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
 use crate::sampling::Discrete;
@@ -86,15 +88,15 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
         positions: mesh.positions.iter().map(|&p| to_world.point(p)).collect(),
         normals: mesh.normals.iter().map(|&n| to_world.normal(n)).collect(),
         uvs: mesh.uvs.clone(),
-        triangles: mesh.triangles.iter().map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }).collect(),
+        triangles: mesh
+            .triangles
+            .iter()
+            .map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] })
+            .collect(),
     }
 }
 
-fn emitters(
-    scene: &Scene,
-    pieces: &[Vec<Primitive>],
-    target: Target,
-) -> (Vec<Emitter>, Vec<Option<u32>>) {
+fn emitters(scene: &Scene, pieces: &[Vec<Primitive>], target: Target) -> (Vec<Emitter>, Vec<Option<u32>>) {
     let mut emitters = Vec::new();
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, shape) in scene.shapes.iter().enumerate() {

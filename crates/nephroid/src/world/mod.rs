@@ -6,8 +6,9 @@ mod build;
 use crate::bvh::Bvh;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
+use crate::handle::{Arena, Handle};
 use crate::light::{Emitter, Lookup, Source};
-use crate::material::{Bsdf, Surface};
+use crate::material::{Bsdf, Material, Surface};
 use crate::math::{Bounds, Frame, Ray, Vec3, offset_origin};
 use crate::sampling::Discrete;
 use crate::scene::Scene;
@@ -93,6 +94,11 @@ impl World {
         &self.camera
     }
 
+    /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.
+    pub(crate) fn has_dirac_surfaces(&self) -> bool {
+        self.scene.shapes.iter().any(|s| is_dirac(&self.scene.materials, s.material))
+    }
+
     /// The first surface a ray meets, null ones included.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let sheared = ShearedRay::new(ray.direction);
@@ -149,11 +155,11 @@ impl World {
         !self.occluded(&ray)
     }
 
-    /// How the surface scatters.
-    pub fn bsdf(&self, hit: &Hit) -> Bsdf {
+    /// How the surface scatters, seen from the side of `wo`.
+    pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
         let material = self.scene.shapes[hit.shape as usize].material;
         let surface = Surface { ng: hit.point.ng, frame: Frame::from_normal(hit.point.ns), uv: hit.point.uv };
-        self.scene.materials[material].at(&self.scene.materials, &self.scene.textures, &surface)
+        Material::at(&self.scene.materials, material, &self.scene.textures, &surface, wo)
     }
 
     /// Radiance the surface itself emits towards `wo`, in W/(m²·sr), and the light it belongs to.
@@ -174,4 +180,13 @@ impl World {
 #[inline]
 pub(crate) fn leave(point: &SurfacePoint, direction: Vec3) -> Ray {
     Ray::new(offset_origin(point.position, point.error, point.ng, direction), direction)
+}
+
+/// Whether either side of a material is a smooth conductor or dielectric.
+fn is_dirac(materials: &Arena<Material>, material: Handle<Material>) -> bool {
+    match materials[material] {
+        Material::Conductor { .. } | Material::Dielectric { .. } | Material::ThinDielectric { .. } => true,
+        Material::TwoSided { front, back } => is_dirac(materials, front) || is_dirac(materials, back),
+        Material::Diffuse { .. } | Material::Phong { .. } | Material::Null => false,
+    }
 }

@@ -1,7 +1,7 @@
 //! The camera side of photon mapping: from a camera ray to radiance.
 
-use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::Maps;
+use super::config::{DirectSource, PhotonMapperConfig, Show};
 use crate::color::Rgb;
 use crate::integrator::Components;
 use crate::material::{Bsdf, BsdfSample, Transport};
@@ -151,14 +151,14 @@ impl<'a> PhotonMapper<'a> {
         }
         if matches!(show, Show::All | Show::Indirect | Show::Caustic) {
             out.caustic +=
-                throughput * self.from_map(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
+                throughput * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
         }
         let gathers = self.gather_rays.is_some();
         if self.config.direct == DirectSource::Map || (shows_global && !gathers) {
             // What the map would blur is sampled below.
             let bsdf = if gathers { *vertex.bsdf } else { vertex.bsdf.diffuse_part() };
             let smooth = Vertex { bsdf: &bsdf, ..*vertex };
-            let (direct, global) = self.from_map(&self.maps.global, &smooth, self.global_bandwidth, scratch);
+            let (direct, global) = self.look_up(&self.maps.global, &smooth, self.global_bandwidth, scratch);
             if shows_direct {
                 out.direct += throughput * direct;
             }
@@ -183,7 +183,7 @@ impl<'a> PhotonMapper<'a> {
     }
 
     /// Reflected radiance by density estimation, direct (L D) and other photons apart.
-    fn from_map(
+    fn look_up(
         &self,
         map: &PhotonMap,
         vertex: &Vertex<'_>,
@@ -255,11 +255,11 @@ impl<'a> PhotonMapper<'a> {
                     found += throughput * self.direct(&there, sampler);
                 }
                 let fixed = |radius| Bandwidth::Fixed { radius };
-                let caustic = self.from_map(&self.maps.caustic, &there, fixed(self.caustic_radius), scratch);
+                let caustic = self.look_up(&self.maps.caustic, &there, fixed(self.caustic_radius), scratch);
                 found += throughput * caustic.1;
                 if distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES {
                     let (direct, other) =
-                        self.from_map(&self.maps.global, &there, fixed(self.global_radius), scratch);
+                        self.look_up(&self.maps.global, &there, fixed(self.global_radius), scratch);
                     found += throughput * (direct + other);
                     break;
                 }
