@@ -149,7 +149,7 @@ impl<'a> PhotonMapper<'a> {
         if shows_direct && self.config.direct == DirectSource::Rays && self.fits(vertex.depth + 1) {
             out.direct += throughput * self.direct(vertex, &mut sample.sampler);
         }
-        if matches!(show, Show::All | Show::Indirect | Show::Caustic) {
+        if self.config.shows_caustics() {
             out.caustic +=
                 throughput * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
         }
