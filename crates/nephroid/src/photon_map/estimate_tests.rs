@@ -59,13 +59,11 @@ fn is_right((mean, deviation): (f64, f64)) -> bool {
     (mean - 1.0).abs() <= 0.003
 }
 
+/// Irradiance at a point from above.
+type Estimator = dyn Fn(&PhotonMap, Vec3, &mut NearestHeap) -> f32;
+
 /// Runs estimators on the same maps; returns the mean and its deviation for each.
-fn run(
-    seed: u64,
-    maps: usize,
-    photons_per_query: usize,
-    estimators: &[&dyn Fn(&PhotonMap, Vec3, &mut NearestHeap) -> f32],
-) -> Vec<(f64, f64)> {
+fn run(seed: u64, maps: usize, photons_per_query: usize, estimators: &[&Estimator]) -> Vec<(f64, f64)> {
     let mut rng = Rng::new(seed);
     let mut values = vec![Vec::new(); estimators.len()];
     let mut scratch = NearestHeap::new();
@@ -79,18 +77,24 @@ fn run(
     values.iter().map(|v| mean_and_deviation(v)).collect()
 }
 
-fn assert_uniform_irradiance(seed: u64, maps: usize, photons_per_query: usize, bandwidths: &[Bandwidth]) {
+fn assert_uniform_irradiance(
+    seed: u64,
+    maps: usize,
+    photons_per_query: usize,
+    kernels: &[Kernel],
+    bandwidths: &[Bandwidth],
+) {
     for &bandwidth in bandwidths {
-        let estimators = KERNELS.map(|kernel| {
+        let estimators = kernels.iter().map(|&kernel| {
             move |map: &PhotonMap, p: Vec3, scratch: &mut NearestHeap| {
                 let mut sum = 0.0;
                 gather(map, &up(p), kernel, bandwidth, scratch, |photon, w| sum += photon.power.r * w);
                 sum
             }
         });
-        let estimators: Vec<&dyn Fn(&PhotonMap, Vec3, &mut NearestHeap) -> f32> =
-            estimators.iter().map(|e| e as _).collect();
-        for (kernel, result) in KERNELS.into_iter().zip(run(seed, maps, photons_per_query, &estimators)) {
+        let estimators: Vec<_> = estimators.collect();
+        let estimators: Vec<&Estimator> = estimators.iter().map(|e| e as _).collect();
+        for (kernel, result) in kernels.iter().zip(run(seed, maps, photons_per_query, &estimators)) {
             assert!(is_right(result), "{kernel}, {bandwidth:?}: {result:?}");
         }
     }
@@ -101,25 +105,27 @@ fn radius_of(count: f32, photons_per_query: usize) -> f32 {
     (count / (PI * (photons_per_query * SIDE * SIDE) as f32)).sqrt()
 }
 
-// Each of the four tests below makes 5 to 10 checks at 1 in 16 000; the first two take the most
-// samples, as the relative variance of the nearest 10 is near 1/8 for the box and .23 for the biweight.
+// The checks below, 18 at 1 in 16 000, would fail by chance for one choice of seeds in 900. The
+// nearest 10 take the most samples, as their relative variance is 1/8 for the box and .23 for the
+// biweight; they are left to the kernels most unlike each other.
 
 #[test]
 fn the_nearest_10_reproduce_uniform_irradiance() {
-    assert_uniform_irradiance(10, 1700, 40, &[Bandwidth::Nearest { k: 10, max_radius: 1.0 }]);
+    let nearest = Bandwidth::Nearest { k: 10, max_radius: 1.0 };
+    assert_uniform_irradiance(10, 1700, 30, &[KERNELS[0], KERNELS[1], KERNELS[4]], &[nearest]);
 }
 
 #[test]
 fn a_largest_radius_that_stops_half_the_searches_changes_no_mean() {
-    let max_radius = radius_of(9.5, 30);
-    assert_uniform_irradiance(11, 1700, 30, &[Bandwidth::Nearest { k: 10, max_radius }]);
+    let nearest = Bandwidth::Nearest { k: 10, max_radius: radius_of(9.5, 30) };
+    assert_uniform_irradiance(11, 1700, 30, &[KERNELS[0], KERNELS[1], KERNELS[4]], &[nearest]);
 }
 
 #[test]
 fn the_nearest_50_and_a_fixed_radius_reproduce_uniform_irradiance() {
-    let radius = radius_of(50.0, 150);
     let nearest = Bandwidth::Nearest { k: 50, max_radius: 1.0 };
-    assert_uniform_irradiance(50, 300, 150, &[nearest, Bandwidth::Fixed { radius }]);
+    let fixed = Bandwidth::Fixed { radius: radius_of(50.0, 100) };
+    assert_uniform_irradiance(50, 270, 100, &KERNELS, &[nearest, fixed]);
 }
 
 #[test]
@@ -131,7 +137,7 @@ fn counting_the_photon_that_sets_the_radius_is_found_out() {
             scratch.iter().map(|n| map.photon(n.place).power.r * Kernel::Box.weight_2d(n.dist_sq, r_sq)).sum()
         }
     };
-    for (k, maps, photons_per_query) in [(10, 1200, 40), (50, 200, 150)] {
+    for (k, maps, photons_per_query) in [(10, 1000, 30), (50, 180, 100)] {
         let result = run(12, maps, photons_per_query, &[&all_k(k)])[0];
         assert!(!is_right(result), "k = {k}: {result:?}");
         let expected = k as f64 / (k as f64 - 1.0);

@@ -269,7 +269,7 @@ mod tests {
         for kernel in KERNELS.into_iter().chain([Kernel::ReportGaussian]) {
             let factor = f64::from(kernel.equal_bandwidth_factor());
             let ratio = roughness_over_spread_sq(kernel) / of_box;
-            assert!((factor.powi(3) - ratio).abs() < 1e-4, "{kernel}: {factor}, {}", ratio.powf(1.0 / 3.0));
+            assert!((factor.powi(3) - ratio).abs() < 1e-4, "{kernel}: {factor}³ is not {ratio}");
         }
         for (kernel, published) in [
             (Kernel::Epanechnikov, 1.44),
