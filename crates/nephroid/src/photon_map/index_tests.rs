@@ -129,6 +129,13 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn equal_points_keep_the_order_of_their_numbers() {
+    // So the tree does not depend on how the standard library selects, either.
+    let (_, order) = KdTree::build(5000, |_| Vec3::ONE);
+    assert!(order.is_sorted());
+}
+
+#[test]
 fn a_search_visits_a_small_part_of_a_large_set() {
     let mut rng = Rng::new(4);
     let points: Vec<_> = (0..100_000).map(|_| rng.point().with_z(0.0)).collect();
