@@ -261,7 +261,7 @@ impl Node {
     fn by_distance(&self, center: Vec3) -> [(f32, u32); FANOUT] {
         let [a, b, c, d] = self.distances_sq(center);
         let mut children = [(a, 0), (b, 1), (c, 2), (d, 3)];
-        // A sorting network; bits of floats that are not negative are ordered like the floats.
+        // A sorting network.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             if children[j].0 < children[i].0 {
                 children.swap(i, j);
