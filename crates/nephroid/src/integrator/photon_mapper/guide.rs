@@ -28,10 +28,20 @@ impl Guide {
         Self { frame: Frame::from_normal(normal), cells: [0.0; CELLS] }
     }
 
-    /// Adds a photon that came from direction `wi`.
+    /// Adds a photon that came from direction `wi`, shared out among the four nearest cells: few photons
+    /// stand for all of the light from around there.
     pub fn add(&mut self, wi: Vec3, power: Rgb) {
-        if let Some(cell) = self.cell(wi) {
-            self.cells[cell] += power.mean();
+        let local = self.frame.to_local(wi);
+        if local.z <= 0.0 {
+            return;
+        }
+        let p = warp::disk_to_square(Vec2::new(local.x, local.y)) * SIDE as f32 - Vec2::splat(0.5);
+        let (low, share) = (p.floor(), p - p.floor());
+        let index = |x: f32| (x.max(0.0) as usize).min(SIDE - 1);
+        for (y, row_share) in [(low.y, 1.0 - share.y), (low.y + 1.0, share.y)] {
+            for (x, column_share) in [(low.x, 1.0 - share.x), (low.x + 1.0, share.x)] {
+                self.cells[index(y) * SIDE + index(x)] += power.mean() * row_share * column_share;
+            }
         }
     }
 
