@@ -1,1 +1,6 @@
 //! Files to and from the types of `nephroid`: scenes in, images out, errors that point.
+
+pub mod diagnostic;
+pub mod mesh;
+pub mod mitsuba;
+pub mod vfs;
