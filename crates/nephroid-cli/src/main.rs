@@ -1,3 +1,43 @@
-//! The command `nephroid`.
+//! The command `nephroid`: reads scenes, renders them and writes pictures.
 
-fn main() {}
+mod args;
+mod builtin;
+mod compare;
+mod console;
+mod exit;
+mod fault;
+mod info;
+mod load;
+mod method;
+mod output;
+mod parameters;
+mod plan;
+mod progress;
+mod render;
+mod report;
+mod scenes;
+mod tonemap;
+
+use std::process::ExitCode;
+
+use crate::args::Command;
+use crate::exit::{Exit, Failure};
+
+fn main() -> ExitCode {
+    let command = args::parse();
+    fault::guard(move || match run(&command) {
+        Ok(exit) => exit,
+        Err(failure) => failure.report(),
+    })
+    .into()
+}
+
+fn run(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::Render(args) => render::run(args),
+        Command::Scenes(args) => scenes::run(args),
+        Command::Tonemap(args) => tonemap::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Info(args) => info::run(args),
+    }
+}

@@ -151,6 +151,14 @@ fn compressible_images_are_not_taken_for_damaged_ones() {
 }
 
 #[test]
+fn a_decoder_that_overflows_does_no_harm() {
+    // Empty runs, each of which multiplies the length of the next by 256.
+    let mut bytes = hdr_header(4, 1);
+    bytes.extend([1, 1, 1, 0].repeat(12));
+    assert!(matches!(read_image_bytes(&bytes), Err(ImageProblem::Damaged { .. })));
+}
+
+#[test]
 fn images_without_pixels_are_refused() {
     for bytes in [hdr_header(0, 5), hdr_header(5, 0), jpeg_header(0, 9), exr_header(0, 0)] {
         assert!(read_image_bytes(&bytes).is_err());

@@ -24,10 +24,10 @@ pub fn decode(bytes: &[u8]) -> Result<Image, ImageProblem> {
     for header in &meta.headers {
         check_header(header, bytes.len())?;
     }
-    let (_, channels) = meta
+    let channels = meta
         .headers
         .iter()
-        .find_map(|h| Channels::of(&h.channels.list).map(|c| (h, c)))
+        .find_map(|h| Channels::of(&h.channels.list))
         .ok_or_else(|| ImageProblem::NoColour { found: channel_names(&meta.headers) })?;
     match channels {
         Channels::Rgb(names) => decode_rgb(bytes, names),

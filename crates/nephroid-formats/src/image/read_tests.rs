@@ -109,11 +109,14 @@ fn radiance_hdr_is_linear() {
     assert_eq!(read_texture(&other, false).unwrap().image, file.image);
 }
 
-/// An OpenEXR file of two pixels, one layer of channels with a name and two halves each.
-fn half_exr(parts: &[&[(&str, [f32; 2])]]) -> Vec<u8> {
+/// Channels by their names, with the values of two pixels.
+type Channels<'a> = &'a [(&'a str, [f32; 2])];
+
+/// An OpenEXR file of two pixels as halves.
+fn half_exr(parts: &[Channels]) -> Vec<u8> {
     use exr::image::{AnyChannel, AnyChannels, Encoding, Image as File, Layer as Part, Layers};
     use exr::meta::header::{ImageAttributes, LayerAttributes};
-    let part = |(i, channels): (usize, &&[(&str, [f32; 2])])| {
+    let part = |(i, channels): (usize, &Channels)| {
         let channels = channels.iter().map(|(name, values)| {
             AnyChannel::new(*name, FlatSamples::F16(values.map(f16::from_f32).to_vec()))
         });
@@ -133,7 +136,7 @@ fn exr_channels_are_found() {
     let colours = vec![Rgb::new(1.0, 2.0, 3.0), Rgb::new(0.5, 0.25, 8.0)];
     let (r, g, b) = ([1.0, 0.5], [2.0, 0.25], [3.0, 8.0]);
     let bad = [7.0, 7.0];
-    let cases: [&[&[(&str, [f32; 2])]]; 5] = [
+    let cases: [&[Channels]; 5] = [
         &[&[("R", r), ("G", g), ("B", b)]],
         &[&[("A", bad), ("B", b), ("G", g), ("R", r), ("Y", bad), ("a.R", bad), ("a.G", bad), ("a.B", bad)]],
         &[&[("View.Combined.R", r), ("View.Combined.G", g), ("View.Combined.B", b), ("View.Z.Z", bad)]],

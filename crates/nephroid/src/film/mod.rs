@@ -6,12 +6,14 @@ mod filter_sampler;
 mod fixed;
 mod sums;
 mod tonemap;
+mod tonemap_name;
 
 pub use error::{ImageError, SizeMismatch, difference_picture};
 pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};
 pub use sums::{Film, FilmCounts, PixelSum, PixelTotal};
-pub use tonemap::{Equalization, ToneMap, ToneMapError, White};
+pub use tonemap::{Equalization, ToneMap, White};
+pub use tonemap_name::ToneMapError;
 
 /// Size and sampling of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

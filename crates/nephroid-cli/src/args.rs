@@ -1,0 +1,231 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use nephroid::film::{ImageError, ToneMap};
+
+use crate::method::Integrator;
+use crate::parameters::PhotonFlags;
+
+/// Photon mapping: renders scenes in the XML of Mitsuba 3.
+///
+/// Without arguments, renders the built-in scene "cornell" to nephroid.exr and nephroid.png.
+#[derive(Debug, Parser)]
+#[command(name = "nephroid", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene
+    Render(Box<RenderArgs>),
+    /// List the built-in scenes, or print the file of one
+    Scenes(ScenesArgs),
+    /// Make a picture for a display from a file of radiances
+    Tonemap(TonemapArgs),
+    /// Measure how far a picture is from its reference
+    Compare(CompareArgs),
+    /// Tell what a scene contains
+    Info(InfoArgs),
+}
+
+/// Reads the command line; on a mistake in it, or when asked for help, the process ends here.
+pub fn parse() -> Command {
+    let given: Vec<_> = std::env::args_os().collect();
+    let bare = given.len() <= 1;
+    let cli = if bare { Cli::parse_from(["nephroid", "render"]) } else { Cli::parse_from(given) };
+    cli.command
+}
+
+/// How a scene is read.
+#[derive(Args, Debug)]
+pub struct SceneArgs {
+    /// Set a $parameter of the scene
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
+    pub defines: Vec<(String, String)>,
+    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+/// `nephroid render`.
+#[derive(Args, Debug)]
+pub struct RenderArgs {
+    /// A scene file, or the name of a built-in scene [default: cornell]
+    pub scene: Option<PathBuf>,
+    /// A picture to write, .exr (radiance) or .png (for a display); may be repeated
+    /// [default: SCENE.exr and SCENE.png in the current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// photonmapper, path, or scene for the one the scene asks for
+    #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
+    pub integrator: Option<Integrator>,
+    /// Size of the picture
+    #[arg(long, value_name = "WxH", value_parser = resolution)]
+    pub resolution: Option<(u32, u32)>,
+    /// Everything random follows from it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Threads to work with [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress, notes and statistics
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print one JSON object about the render to the standard output
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+    #[command(flatten)]
+    pub display: DisplayArgs,
+    #[command(flatten)]
+    pub photons: PhotonFlags,
+}
+
+/// When a render is done: at the first of these that is reached.
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "When to stop (the first that is reached; else the scene's sample_count)")]
+pub struct LimitArgs {
+    /// Camera samples of each pixel, in all
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub spp: Option<u32>,
+    /// Passes: photons, and the scene's sample_count of camera samples (with --spp, its share)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub passes: Option<u64>,
+    /// Seconds, from the start of rendering
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time: Option<f64>,
+}
+
+/// How a PNG is made from radiance.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "PNG")]
+pub struct DisplayArgs {
+    /// Tone mapping: clamp[:VALUE], equalize, equalize-report, equalize-clamp[:VALUE], gamma[:GAMMA],
+    /// clamp-gamma[:VALUE[,GAMMA]], reinhard[:KEY[,WHITE]], linear, srgb
+    #[arg(long, value_name = "OPERATOR", default_value = "srgb", value_parser = ToneMap::parse)]
+    pub tonemap: ToneMap,
+    /// Brighten by so many stops first
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: f32,
+}
+
+/// `nephroid scenes`.
+#[derive(Args, Debug)]
+pub struct ScenesArgs {
+    /// Print the file of this scene
+    pub name: Option<String>,
+}
+
+/// `nephroid tonemap`.
+#[derive(Args, Debug)]
+pub struct TonemapArgs {
+    /// Radiances: OpenEXR or Radiance HDR
+    #[arg(value_name = "IMAGE")]
+    pub image: PathBuf,
+    /// The picture to write, .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// clamp[:VALUE], equalize, equalize-report, equalize-clamp[:VALUE], gamma[:GAMMA],
+    /// clamp-gamma[:VALUE[,GAMMA]], reinhard[:KEY[,WHITE]], linear, srgb
+    #[arg(long, value_name = "OPERATOR", default_value = "srgb", value_parser = ToneMap::parse)]
+    pub operator: ToneMap,
+    /// Brighten by so many stops first
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: f32,
+}
+
+/// `nephroid compare`.
+#[derive(Args, Debug)]
+pub struct CompareArgs {
+    /// The picture
+    #[arg(value_name = "IMAGE")]
+    pub image: PathBuf,
+    /// What it should be
+    #[arg(value_name = "REFERENCE")]
+    pub reference: PathBuf,
+    /// Draw the difference, .png: red where the picture is brighter, blue where it is darker
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Added to the squared reference that relMSE divides by
+    #[arg(long, value_name = "EPSILON", default_value_t = ImageError::EPSILON, value_parser = epsilon)]
+    pub epsilon: f64,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `nephroid info`.
+#[derive(Args, Debug)]
+pub struct InfoArgs {
+    /// A scene file, or the name of a built-in scene
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn define(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("write NAME=VALUE".to_owned()),
+    }
+}
+
+fn resolution(text: &str) -> Result<(u32, u32), String> {
+    let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let (width, height) = size.ok_or("write WIDTHxHEIGHT in pixels, as in 640x480")?;
+    let sides = 1..=65_536u32;
+    if sides.contains(&width) && sides.contains(&height) {
+        Ok((width, height))
+    } else {
+        Err("each side must be between 1 and 65536".to_owned())
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    number(text, "write a number of seconds above zero", |s| s > 0.0 && s < 1e9)
+}
+
+fn epsilon(text: &str) -> Result<f64, String> {
+    number(text, "write a number that is not negative", |e| e >= 0.0 && e.is_finite())
+}
+
+fn stops(text: &str) -> Result<f32, String> {
+    number(text, "write a number between -64 and 64", |s| s.abs() <= 64.0).map(|s| s as f32)
+}
+
+fn number(text: &str, expected: &str, accept: impl Fn(f64) -> bool) -> Result<f64, String> {
+    text.parse().ok().filter(|&v| accept(v)).ok_or_else(|| expected.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_help_lists_every_tone_map() {
+        let long = ToneMap::USAGE.join(", ");
+        let mut cli = Cli::command();
+        for name in ["render", "tonemap"] {
+            let help = cli.find_subcommand_mut(name).unwrap().render_long_help().to_string();
+            let help: String = help.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(help.contains(&long), "{help}");
+        }
+    }
+}

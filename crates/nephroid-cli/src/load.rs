@@ -1,0 +1,92 @@
+//! From the name of a scene to a world that can be rendered.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use nephroid::scene::{Scene, SceneError, Subject};
+use nephroid::shape::Geometry;
+use nephroid::world::World;
+use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
+use nephroid_formats::mitsuba::{Options, Origins, SceneFile, read_scene, read_scene_str};
+use nephroid_formats::vfs::DiskFiles;
+
+use crate::args::SceneArgs;
+use crate::builtin::{self, BuiltinScene};
+use crate::exit::Failure;
+use crate::scenes;
+
+/// What the pictures of a scene are called: the name of its file without the suffix.
+pub fn name(scene: &Path) -> OsString {
+    match builtin_of(scene) {
+        Some(builtin) => builtin.name.into(),
+        None => scene.file_stem().unwrap_or(scene.as_os_str()).to_owned(),
+    }
+}
+
+/// The built-in scene of that name, unless there is such a file.
+fn builtin_of(scene: &Path) -> Option<&'static BuiltinScene> {
+    scene.to_str().and_then(builtin::find).filter(|_| !scene.is_file())
+}
+
+/// Reads the file of that name, or the built-in scene where there is no such file.
+pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
+    let options = Options { defines: args.defines.clone(), lenient: args.lenient };
+    let file = match builtin_of(scene) {
+        Some(BuiltinScene { name, text }) => {
+            read_scene_str(&format!("{name}.xml"), text, &DiskFiles, &options)
+        }
+        None => {
+            check_readable(scene)?;
+            read_scene(scene, &DiskFiles, &options)
+        }
+    };
+    file.map_err(Failure::Scene)
+}
+
+/// Tells a file that cannot be read, which is no fault of the scene.
+fn check_readable(path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    match std::fs::File::open(path) {
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let bare = path.components().count() == 1 && path.extension().is_none();
+            let builtin = if bare { format!(", and {}", scenes::unknown(&name.to_string())) } else { String::new() };
+            Err(Failure::File(format!("{name}: no such file{builtin}")))
+        }
+        Err(error) => Err(Failure::File(format!("{name}: cannot be read: {error}"))),
+    }
+}
+
+/// Prepares a scene for rendering; its problems are told at their places in the file.
+pub fn world(scene: Scene, origins: &Origins) -> Result<World, Failure> {
+    // Meshes have no places of their own, but those of their shapes.
+    let mesh_of_shape: Vec<Option<usize>> = scene
+        .shapes
+        .iter()
+        .map(|shape| match shape.geometry {
+            Geometry::Mesh(mesh) => Some(mesh.index()),
+            _ => None,
+        })
+        .collect();
+    World::new(scene).map_err(|errors| {
+        let diagnostic = |error: &SceneError| match origin(error.subject, origins, &mesh_of_shape) {
+            Some(at) => Diagnostic::error(at, error.message.clone()),
+            None => Diagnostic::error(&origins.scene, error.to_string()),
+        };
+        Failure::Scene(Diagnostics(errors.0.iter().map(diagnostic).collect()))
+    })
+}
+
+/// Where a part of a scene stands.
+fn origin<'o>(subject: Subject, origins: &'o Origins, meshes: &[Option<usize>]) -> Option<&'o Location> {
+    match subject {
+        Subject::Camera | Subject::Film => Some(&origins.camera),
+        Subject::Material(i) => origins.materials.get(i),
+        Subject::Shape(i) => origins.shapes.get(i),
+        Subject::Light(i) => origins.lights.get(i),
+        Subject::Mesh(i) => {
+            meshes.iter().position(|mesh| *mesh == Some(i)).and_then(|shape| origins.shapes.get(shape))
+        }
+        Subject::Texture(_) | Subject::Image(_) => None,
+    }
+}

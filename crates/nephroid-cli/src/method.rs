@@ -1,0 +1,173 @@
+//! Which integrator renders, and with which parameters.
+
+use nephroid::integrator::{Method, PathConfig};
+use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
+use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue};
+use serde_json::{Map, Value, json};
+
+use crate::console::Messages;
+use crate::exit::Failure;
+use crate::parameters::{Draft, PARAMETERS, PhotonFlags};
+
+/// An integrator that can be asked for by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Photon mapping.
+    PhotonMapper,
+    /// Path tracing.
+    Path,
+    /// What the scene says.
+    Scene,
+}
+
+impl Integrator {
+    /// The integrator of a name on the command line.
+    pub fn parse(name: &str) -> Result<Self, String> {
+        match name {
+            "photonmapper" => Ok(Self::PhotonMapper),
+            "path" => Ok(Self::Path),
+            "scene" => Ok(Self::Scene),
+            _ => Err("it must be photonmapper, path or scene".to_owned()),
+        }
+    }
+}
+
+/// Settles the integrator: what the command line says; else the scene's, if it is one for photons;
+/// else the photon mapper.
+pub fn choose(
+    wanted: Option<Integrator>,
+    request: &IntegratorRequest,
+    flags: &PhotonFlags,
+    messages: &mut Messages,
+) -> Result<Method, Failure> {
+    let chosen = match wanted {
+        Some(Integrator::Scene) => by_scene(request)?,
+        Some(other) => other,
+        None => Integrator::PhotonMapper,
+    };
+    let mut draft = Draft::default();
+    let complaints = match request.name.as_str() {
+        "photonmapper" => read_all(request, &mut draft),
+        _ => read_depth(request, &mut draft),
+    };
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        complaints.into_iter().partition(|d| d.severity == Severity::Error);
+    if !errors.is_empty() {
+        return Err(Failure::Scene(Diagnostics(errors)));
+    }
+    for warning in &warnings {
+        messages.diagnostic(warning);
+    }
+    for (parameter, value) in flags.iter() {
+        // Checked when the command line was read.
+        parameter.set(&mut draft, value).map_err(Failure::Usage)?;
+    }
+    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "") {
+        messages.note(&format!(
+            "the scene asks for the integrator \"{}\"; rendering with photonmapper (see --integrator)",
+            request.name
+        ));
+    }
+    let config = draft.finish();
+    if chosen == Integrator::Path {
+        let foreign: Vec<String> = flags
+            .names()
+            .into_iter()
+            .filter(|name| !matches!(name.as_str(), "--max-depth" | "--direct-lights"))
+            .collect();
+        if !foreign.is_empty() {
+            messages.warning(&format!("{} mean nothing to the integrator path", foreign.join(", ")));
+        }
+        let (max_depth, direct_lights) = (config.max_depth, config.direct_lights);
+        return Ok(Method::Path(PathConfig { max_depth, direct_lights }));
+    }
+    Ok(Method::PhotonMapper(config))
+}
+
+/// The scene's word.
+fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
+    match request.name.as_str() {
+        "" | "photonmapper" => Ok(Integrator::PhotonMapper),
+        "path" => Ok(Integrator::Path),
+        other => {
+            let message = format!("the integrator \"{other}\" cannot be rendered with");
+            let diagnostic = match &request.location {
+                Some(location) => Diagnostic::error(location, message),
+                None => Diagnostic::global_error(message),
+            };
+            let hint = "without --integrator scene, the photon mapper takes its place";
+            Err(Failure::Scene(Diagnostics(vec![diagnostic.hint(hint)])))
+        }
+    }
+}
+
+/// Reads every parameter of the photon mapper.
+fn read_all(request: &IntegratorRequest, draft: &mut Draft) -> Vec<Diagnostic> {
+    let mut complaints = Vec::new();
+    for parameter in PARAMETERS {
+        let name = parameter.name_in_files();
+        let Some(value) = value(request, &name) else { continue };
+        if let Err(reason) = parameter.set(draft, &value) {
+            complaints.push(bad_value(request, &name, &reason));
+        }
+    }
+    complaints.extend(request.unused());
+    complaints
+}
+
+/// Reads how long paths may be for another renderer's integrator. What else it says is its own
+/// business; but what no integrator knows may be a mistake.
+fn read_depth(request: &IntegratorRequest, draft: &mut Draft) -> Vec<Diagnostic> {
+    let mut complaints = Vec::new();
+    let depth = PARAMETERS.iter().find(|p| p.name_in_files() == "max_depth");
+    if let (Some(depth), Some(value)) = (depth, value(request, "max_depth")) {
+        if let Err(reason) = depth.set(draft, &value) {
+            complaints.push(bad_value(request, "max_depth", &reason));
+        }
+    }
+    let unknown = request.unused().into_iter().filter(|d| d.severity == Severity::Error);
+    complaints.extend(unknown.map(|d| Diagnostic { severity: Severity::Warning, ..d }));
+    complaints
+}
+
+/// The text of a value, whatever its type, which is then taken as used.
+fn value(request: &IntegratorRequest, name: &str) -> Option<String> {
+    let typed = request.parameters.iter().find(|p| p.name == name).map(|p| p.value.clone());
+    // Asking marks the parameter as used, and as one that could have been given.
+    let _ = request.get_string(name);
+    Some(match typed? {
+        ParameterValue::Int(v) => v.to_string(),
+        ParameterValue::Float(v) => v.to_string(),
+        ParameterValue::Bool(v) => v.to_string(),
+        ParameterValue::Text(v) => v,
+    })
+}
+
+fn bad_value(request: &IntegratorRequest, name: &str, reason: &str) -> Diagnostic {
+    let message = format!("a bad value for \"{name}\": {reason}");
+    match request.parameters.iter().find(|p| p.name == name) {
+        Some(parameter) => Diagnostic::error(&parameter.location, message),
+        None => Diagnostic::global_error(message),
+    }
+}
+
+/// The method with its parameters.
+pub fn describe(method: &Method) -> Value {
+    let mut object = Map::new();
+    object.insert("name".to_owned(), json!(method.name()));
+    match method {
+        Method::PhotonMapper(config) => {
+            object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(config))));
+        }
+        Method::Path(PathConfig { max_depth, direct_lights }) => {
+            let config = nephroid::integrator::PhotonMapperConfig {
+                max_depth: *max_depth,
+                direct_lights: *direct_lights,
+                ..Default::default()
+            };
+            let shared = PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(&config)));
+            object.extend(shared.filter(|(name, _)| matches!(name.as_str(), "max_depth" | "direct_lights")));
+        }
+    }
+    Value::Object(object)
+}

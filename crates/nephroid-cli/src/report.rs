@@ -1,0 +1,312 @@
+//! What there is to say about a render when it is done.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use nephroid::integrator::Method;
+use nephroid::session::{MapStatistics, RenderSettings};
+use nephroid::transport::{Balance, MapPlan};
+use serde_json::{Value, json};
+
+use crate::console::Messages;
+use crate::method;
+use crate::output::Output;
+use crate::plan::Plan;
+use crate::render::{Ended, Rendered};
+
+/// A render and its circumstances.
+pub struct Report<'a> {
+    /// The scene, as it was named.
+    pub scene: &'a str,
+    /// How it was rendered.
+    pub settings: &'a RenderSettings,
+    /// How much was to be rendered.
+    pub plan: &'a Plan,
+    /// What became of it.
+    pub rendered: &'a Rendered,
+    /// The files that were written.
+    pub outputs: &'a [Output],
+    /// How long it took to read the scene.
+    pub reading: Duration,
+    /// How long it took to write the pictures.
+    pub writing: Duration,
+}
+
+/// One map's numbers, with what was planned for it.
+struct Map {
+    name: &'static str,
+    wanted: u64,
+    plan: MapPlan,
+    numbers: MapStatistics,
+}
+
+impl Map {
+    /// Photons in one map, on average over the passes.
+    fn photons_per_map(&self) -> f64 {
+        let maps = self.numbers.paths as f64 / self.plan.paths.max(1) as f64;
+        if maps > 0.0 { self.numbers.photons as f64 / maps } else { 0.0 }
+    }
+
+    fn bytes_per_photon(&self) -> Option<f64> {
+        let photons = self.photons_per_map();
+        (photons > 0.0).then(|| self.numbers.bytes as f64 / photons)
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "wanted": self.wanted,
+            "emitted": self.numbers.paths,
+            "stored": self.numbers.photons,
+            "bytes": self.numbers.bytes,
+            "bytes_per_photon": self.bytes_per_photon(),
+            "limited": self.plan.limited,
+        })
+    }
+}
+
+impl Report<'_> {
+    fn maps(&self) -> Vec<Map> {
+        let Method::PhotonMapper(config) = &self.settings.method else { return Vec::new() };
+        let s = &self.rendered.statistics;
+        vec![
+            Map { name: "global", wanted: config.photons, plan: s.plan.global, numbers: s.global },
+            Map { name: "caustic", wanted: config.caustic_photons, plan: s.plan.caustic, numbers: s.caustic },
+        ]
+    }
+
+    fn balances(&self) -> impl Iterator<Item = (&str, &Balance)> {
+        self.rendered.lights.iter().map(String::as_str).zip(&self.rendered.statistics.ledger.lights)
+    }
+
+    /// Warns of what may make the picture wrong or poor.
+    pub fn check(&self, messages: &mut Messages) {
+        let rendered = self.rendered;
+        if !rendered.has_light {
+            messages.warning("there is no light in the scene: the picture is black");
+        }
+        for map in self.maps().iter().filter(|map| map.plan.limited) {
+            messages.warning(&format!(
+                "the {} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
+                map.name,
+                grouped(map.photons_per_map() as u64),
+                grouped(map.wanted)
+            ));
+        }
+        for (light, balance) in self.balances() {
+            if balance.imbalance().abs() > 1e-6 || balance.roulette_z().abs() > 4.0 {
+                messages.warning(&format!(
+                    "the energy of \"{light}\" does not add up: imbalance {:.1e}, roulette {:.1} sigma; please report this",
+                    balance.imbalance(),
+                    balance.roulette_z()
+                ));
+            }
+        }
+        let counts = rendered.film.counts();
+        if counts.non_finite > 0 {
+            messages.warning(&format!(
+                "{} estimates of pixels were not finite and are left out; please report this",
+                counts.non_finite
+            ));
+        }
+        if counts.saturated > 0 {
+            messages.warning(&format!("{} values were too large and are cut down", counts.saturated));
+        }
+        if let Some(limit) = self.plan.seconds {
+            let took = rendered.rendering.as_secs_f64();
+            if took > 1.05 * limit {
+                messages.warning(&format!("the first samples of each pixel took {took:.1} s, longer than --time"));
+            }
+        }
+        if rendered.film.iterations() == 0 {
+            messages.warning("stopped before the first samples were complete: no picture is written");
+        }
+    }
+
+    /// A block of lines.
+    pub fn text(&self) -> String {
+        let r = self.rendered;
+        let s = &r.statistics;
+        let mut out = String::new();
+        let method = self.settings.method.name();
+        let ended = match r.ended {
+            Ended::Finished => "",
+            Ended::TimeIsUp => ", until the time was up",
+            Ended::Interrupted => ", until it was stopped",
+        };
+        // Writing into a string cannot fail.
+        let _ = writeln!(
+            out,
+            "{}: {} by {} pixels, {} samples each, {method} with {}, {}{ended}",
+            self.scene,
+            r.film.width(),
+            r.film.height(),
+            s.samples_per_pixel,
+            plural(r.threads as u64, "thread"),
+            plural(s.iterations, "pass"),
+        );
+        for map in self.maps() {
+            let bytes = map.bytes_per_photon().map_or(String::new(), |b| format!(", {b:.0} bytes each"));
+            let _ = writeln!(
+                out,
+                "{:>7} map: {} photons stored of {} paths{bytes}",
+                map.name,
+                grouped(map.numbers.photons),
+                grouped(map.numbers.paths)
+            );
+        }
+        let seconds = self.seconds();
+        let times: Vec<String> = seconds.iter().map(|(name, s)| format!("{name} {s:.2}")).collect();
+        let _ = writeln!(out, "    seconds: {}", times.join(", "));
+        self.ledger(&mut out);
+        if let Some(ratio) = s.picture.direct_to_indirect() {
+            let _ = writeln!(out, "direct to indirect light: {ratio:.4}");
+        }
+        let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr)", r.film.mean_luminance());
+        if !self.outputs.is_empty() {
+            let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
+            let _ = writeln!(out, "written: {}", names.join(", "));
+        }
+        out
+    }
+
+    /// Where the power of each light went.
+    fn ledger(&self, out: &mut String) {
+        let mean = |v: [f64; 3]| v.iter().sum::<f64>() / 3.0;
+        let width = self.balances().map(|(name, _)| name.chars().count()).max().unwrap_or(0).max(5);
+        for (i, (name, b)) in self.balances().enumerate() {
+            if i == 0 {
+                let _ = writeln!(
+                    out,
+                    "{:width$} {:>11} {:>11} {:>11} {:>11} {:>11}   imbalance  roulette/sigma  (W, mean of the channels)",
+                    "light", "emitted", "absorbed", "escaped", "ended", "roulette"
+                );
+            }
+            let _ = write!(out, "{name:width$}");
+            for value in [b.emitted, b.absorbed, b.escaped, b.ended, b.roulette] {
+                let _ = write!(out, " {:>11}", power(mean(value)));
+            }
+            let _ = writeln!(out, " {:>11.1e} {:>15.2}", b.imbalance(), b.roulette_z());
+        }
+    }
+
+    fn seconds(&self) -> [(&'static str, f64); 8] {
+        let (r, p) = (self.rendered, self.rendered.phases);
+        [
+            ("read", self.reading),
+            ("prepare", r.preparing),
+            ("pilot", p.pilot),
+            ("photons", p.photons),
+            ("maps", p.maps),
+            ("picture", p.camera),
+            ("render", r.rendering),
+            ("write", self.writing),
+        ]
+        .map(|(name, time)| (name, time.as_secs_f64()))
+    }
+
+    /// One object.
+    pub fn json(&self, warnings: &[String]) -> Value {
+        let r = self.rendered;
+        let s = &r.statistics;
+        let picture = |sums: [f64; 3]| sums.map(|v| v / s.picture.samples.max(1) as f64);
+        let maps: serde_json::Map<_, _> =
+            self.maps().iter().map(|map| (map.name.to_owned(), map.json())).collect();
+        let balance = |(light, b): (&str, &Balance)| {
+            json!({
+                "light": light,
+                "emitted": b.emitted,
+                "absorbed": b.absorbed,
+                "escaped": b.escaped,
+                "ended": b.ended,
+                "roulette": b.roulette,
+                "imbalance": b.imbalance(),
+                "roulette_sigmas": b.roulette_z(),
+            })
+        };
+        let image = r.film.develop();
+        let outputs: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "scene": self.scene,
+            "integrator": method::describe(&self.settings.method),
+            "width": r.film.width(),
+            "height": r.film.height(),
+            "seed": self.settings.seed,
+            "threads": r.threads,
+            "limits": {
+                "samples_per_pixel": self.plan.samples,
+                "passes": self.plan.passes,
+                "seconds": self.plan.seconds,
+            },
+            "ended": match r.ended {
+                Ended::Finished => "finished",
+                Ended::TimeIsUp => "time",
+                Ended::Interrupted => "interrupted",
+            },
+            "passes": s.iterations,
+            "samples_per_pass": self.settings.samples_per_pixel,
+            "samples_per_pixel": s.samples_per_pixel,
+            "camera_samples": s.picture.samples,
+            "seconds": self.seconds().into_iter().map(|(n, v)| (n.to_owned(), json!(v))).collect::<serde_json::Map<_, _>>(),
+            "photons": maps,
+            "ledger": self.balances().map(balance).collect::<Vec<_>>(),
+            "image": {
+                "mean": image.mean().to_array(),
+                "mean_luminance": r.film.mean_luminance(),
+                "non_finite": r.film.counts().non_finite,
+                "saturated": r.film.counts().saturated,
+            },
+            "light": {
+                "emitted": picture(s.picture.emitted),
+                "direct": picture(s.picture.direct),
+                "global": picture(s.picture.global),
+                "caustic": picture(s.picture.caustic),
+                "direct_to_indirect": s.picture.direct_to_indirect(),
+            },
+            "outputs": outputs,
+            "messages": warnings,
+        })
+    }
+}
+
+/// Digits in groups of three.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// Six digits, and zero as zero.
+fn power(watts: f64) -> String {
+    match watts.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e6).contains(&size) => format!("{watts:.6}").chars().take(9).collect(),
+        _ => format!("{watts:.3e}"),
+    }
+}
+
+fn plural(n: u64, noun: &str) -> String {
+    match (n, noun) {
+        (1, _) => format!("1 {noun}"),
+        (_, "pass") => format!("{n} passes"),
+        _ => format!("{n} {noun}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_easy_to_read() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
+        assert_eq!([0.0, 12.5, -1e-9].map(power), ["0", "12.500000", "-1.000e-9"]);
+        assert_eq!([plural(1, "pass"), plural(2, "pass"), plural(3, "thread")], ["1 pass", "2 passes", "3 threads"]);
+    }
+}

@@ -1,0 +1,81 @@
+//! Triangle meshes from files.
+
+mod obj;
+mod ply;
+
+pub use obj::read_obj;
+pub use ply::read_ply;
+
+use nephroid::math::Vec3;
+use nephroid::shape::Mesh;
+use thiserror::Error;
+
+/// How to read a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MeshOptions {
+    /// Leave triangles flat, whatever the file says of normals.
+    pub face_normals: bool,
+    /// Replace `v` by `1 − v`.
+    pub flip_tex_coords: bool,
+}
+
+/// A mesh and what had to be left out of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// At least one triangle, each with an area.
+    pub mesh: Mesh,
+    /// Triangles without area that were left out.
+    pub degenerate: usize,
+}
+
+/// Why a file is not a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}{message}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
+pub struct MeshError {
+    /// The line of the file, from 1, if that is known.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl MeshError {
+    fn new(message: impl Into<String>) -> Self {
+        Self { line: None, message: message.into() }
+    }
+
+    fn at(line: usize, message: impl Into<String>) -> Self {
+        Self { line: Some(line), message: message.into() }
+    }
+}
+
+/// Leaves out triangles without area; an error if no others are left.
+fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
+    let all = mesh.triangles.len();
+    if all == 0 {
+        return Err(MeshError::new("the file has no faces"));
+    }
+    let positions = &mesh.positions;
+    mesh.triangles.retain(|triangle| has_area(triangle.map(|i| positions[i as usize])));
+    let degenerate = all - mesh.triangles.len();
+    if degenerate == all {
+        return Err(MeshError::new("no face of the file has an area"));
+    }
+    Ok(MeshFile { mesh, degenerate })
+}
+
+/// In double precision, so that small triangles are not taken for none.
+fn has_area(p: [Vec3; 3]) -> bool {
+    let [a, b, c] = p.map(|p| p.as_dvec3());
+    (b - a).cross(c - a).length_squared() > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiny_triangles_have_an_area() {
+        assert!(has_area([Vec3::ZERO, Vec3::X * 1e-30, Vec3::Y * 1e-30]));
+        assert!(!has_area([Vec3::ZERO, Vec3::X, Vec3::X * 3.0]));
+    }
+}

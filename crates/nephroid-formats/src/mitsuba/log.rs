@@ -1,0 +1,44 @@
+use std::cell::RefCell;
+
+use crate::diagnostic::{Diagnostic, Location, Severity};
+
+/// Nobody reads more messages than this.
+const MAX_MESSAGES: usize = 500;
+
+/// Collects messages while a scene is read, so that one reading shows all mistakes.
+#[derive(Default)]
+pub(super) struct Log {
+    list: RefCell<Vec<Diagnostic>>,
+}
+
+impl Log {
+    pub(super) fn push(&self, diagnostic: Diagnostic) {
+        let mut list = self.list.borrow_mut();
+        if list.len() < MAX_MESSAGES && !list.contains(&diagnostic) {
+            list.push(diagnostic);
+        } else if diagnostic.severity == Severity::Error && !list.iter().any(is_error) {
+            // A scene must not pass because its warnings have filled the list.
+            list.push(diagnostic);
+        }
+    }
+
+    pub(super) fn error(&self, at: &Location, message: impl Into<String>) {
+        self.push(Diagnostic::error(at, message));
+    }
+
+    pub(super) fn warn(&self, at: &Location, message: impl Into<String>) {
+        self.push(Diagnostic::warning(at, message));
+    }
+
+    pub(super) fn has_errors(&self) -> bool {
+        self.list.borrow().iter().any(is_error)
+    }
+
+    pub(super) fn into_list(self) -> Vec<Diagnostic> {
+        self.list.into_inner()
+    }
+}
+
+fn is_error(diagnostic: &Diagnostic) -> bool {
+    diagnostic.severity == Severity::Error
+}

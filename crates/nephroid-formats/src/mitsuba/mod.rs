@@ -1,0 +1,179 @@
+//! Scenes in the XML format of Mitsuba 2 and 3.
+//!
+//! A text becomes a tree with its includes and parameters filled in, then each element is read
+//! into a [`Scene`]. All mistakes are reported at once, with file, line and column. Names that no
+//! version of the format has are errors; what the format has but cannot be rendered yet is replaced
+//! by its nearest kin with a warning, or refused where nothing is near (see [`Options::lenient`]).
+
+mod cie1931;
+mod document;
+mod emitter;
+mod integrator;
+mod log;
+mod material;
+mod names;
+mod number;
+mod parameters;
+mod properties;
+mod reader;
+mod sensor;
+mod shape;
+mod spectrum;
+mod texture;
+mod transform;
+
+pub use integrator::{IntegratorParameter, IntegratorRequest, ParameterValue};
+
+use std::path::Path;
+
+use nephroid::scene::Scene;
+
+use self::document::{Document, Element};
+use self::log::Log;
+use self::properties::Ids;
+use self::reader::Reader;
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::vfs::Files;
+
+/// How to read a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Values for the scene's `$parameters`, before its own defaults.
+    pub defines: Vec<(String, String)>,
+    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each; else
+    /// they are errors.
+    pub lenient: bool,
+}
+
+/// A scene as its file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// What is to be seen.
+    pub scene: Scene,
+    /// How to render it.
+    pub integrator: IntegratorRequest,
+    /// Samples in a pixel, if the file says.
+    pub sample_count: Option<u32>,
+    /// What may not be as intended.
+    pub warnings: Vec<Diagnostic>,
+    /// Where the parts of the scene stand in the file.
+    pub origins: Origins,
+}
+
+/// Where the parts of a scene stand in its file, by their index in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origins {
+    /// The scene as a whole.
+    pub scene: Location,
+    /// The camera and its film.
+    pub camera: Location,
+    /// Each of [`Scene::shapes`].
+    pub shapes: Vec<Location>,
+    /// Each of [`Scene::lights`].
+    pub lights: Vec<Location>,
+    /// Each of [`Scene::materials`]. A default material has the place of the first shape it is for.
+    pub materials: Vec<Location>,
+}
+
+/// Reads a scene and all files it refers to.
+///
+/// # Errors
+///
+/// All that is wrong with the scene, and the warnings with it.
+pub fn read_scene(path: &Path, files: &dyn Files, options: &Options) -> Result<SceneFile, Diagnostics> {
+    match files.read(path) {
+        Ok(bytes) => read_bytes(path, bytes, files, options),
+        Err(error) => {
+            let message = format!("cannot read \"{}\": {error}", path.display());
+            Err(Diagnostics(vec![Diagnostic::global_error(message)]))
+        }
+    }
+}
+
+/// Reads a scene from a text. `name` is what messages call it; the folder in it, if any, is where
+/// the files that the scene refers to are looked for.
+///
+/// # Errors
+///
+/// All that is wrong with the scene, and the warnings with it.
+pub fn read_scene_str(
+    name: &str,
+    text: &str,
+    files: &dyn Files,
+    options: &Options,
+) -> Result<SceneFile, Diagnostics> {
+    read_bytes(Path::new(name), text.as_bytes().to_vec(), files, options)
+}
+
+fn read_bytes(
+    path: &Path,
+    bytes: Vec<u8>,
+    files: &dyn Files,
+    options: &Options,
+) -> Result<SceneFile, Diagnostics> {
+    let log = Log::default();
+    let file = document::load(path, bytes, files, &options.defines, &log)
+        .and_then(|document| interpret(&document, files, options, &log));
+    let has_errors = log.has_errors();
+    let messages = log.into_list();
+    match file {
+        Some(file) if !has_errors => Ok(SceneFile { warnings: messages, ..file }),
+        _ => Err(Diagnostics(messages)),
+    }
+}
+
+fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Log) -> Option<SceneFile> {
+    let ids = collect_ids(document, log);
+    let origins = Origins {
+        scene: document.root.clone(),
+        camera: document.root.clone(),
+        shapes: Vec::new(),
+        lights: Vec::new(),
+        materials: Vec::new(),
+    };
+    let mut reader = Reader::new(&ids, log, files, &document.folders, options.lenient, origins);
+    let integrator = reader.integrator(&document.elements);
+    let sensor = reader.sensor(&document.elements);
+    reader.content(&document.elements);
+    let sensor = sensor?;
+    let Reader { textures, materials, meshes, shapes, lights, origins, .. } = reader;
+    let scene =
+        Scene { camera: sensor.camera, film: sensor.film, textures, materials, meshes, shapes, lights };
+    let sample_count = sensor.sample_count;
+    Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })
+}
+
+/// Every `id` of the scene and the other names that aliases give them.
+fn collect_ids<'t>(document: &'t Document, log: &Log) -> Ids<'t> {
+    let mut ids = Ids::new();
+    for element in &document.elements {
+        collect_ids_of(element, &mut ids, log);
+    }
+    for (existing, new, at) in &document.aliases {
+        match ids.get(existing.as_str()).copied() {
+            Some(element) => {
+                if ids.insert(new, element).is_some() {
+                    log.error(at, format!("the id \"{new}\" is taken"));
+                }
+            }
+            None => {
+                let message = format!("nothing has the id \"{existing}\"");
+                log.push(Diagnostic::error(at, message).did_you_mean(existing, ids.keys().copied()));
+            }
+        }
+    }
+    ids
+}
+
+fn collect_ids_of<'t>(element: &'t Element, ids: &mut Ids<'t>, log: &Log) {
+    if let Some(id) = element.attribute("id").filter(|_| element.tag != "ref") {
+        if let Some(first) = ids.insert(&id.value, element) {
+            let message = format!("the id \"{}\" is taken", id.value);
+            let other = first.attribute("id").map_or(&first.location, |a| &a.location);
+            log.push(Diagnostic::error(&id.location, message).hint(format!("it is first given at {other}")));
+        }
+    }
+    for child in &element.children {
+        collect_ids_of(child, ids, log);
+    }
+}

@@ -1,0 +1,169 @@
+//! The state while a document becomes a scene, and what all its parts need.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use nephroid::handle::{Arena, Handle};
+use nephroid::light::Light;
+use nephroid::material::Material;
+use nephroid::shape::{Mesh, Shape};
+use nephroid::texture::{Image, Texture, Textures};
+
+use super::Origins;
+use super::document::{Element, find};
+use super::log::Log;
+use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
+use super::parameters::shortened;
+use super::properties::{Ids, Plugin};
+use crate::diagnostic::{Diagnostic, Location};
+use crate::vfs::Files;
+
+/// Materials in materials, or textures in textures, through references too.
+const MAX_NESTING: usize = 50;
+
+/// What became of an element that may be referred to more than once.
+#[derive(Clone, Copy)]
+pub(super) enum Outcome<T> {
+    /// It is being read: meeting it again means that it contains itself.
+    Open,
+    /// It was read before.
+    Done(Handle<T>),
+    /// It was tried before, and the log says what is wrong.
+    Failed,
+}
+
+/// How a mesh file was read: its path, `face_normals`, `flip_tex_coords`.
+pub(super) type MeshKey = (PathBuf, bool, bool);
+
+/// A scene in the making.
+pub(super) struct Reader<'t> {
+    pub(super) ids: &'t Ids<'t>,
+    pub(super) log: &'t Log,
+    pub(super) files: &'t dyn Files,
+    pub(super) folders: &'t [PathBuf],
+    pub(super) lenient: bool,
+    pub(super) textures: Textures,
+    pub(super) materials: Arena<Material>,
+    pub(super) meshes: Arena<Mesh>,
+    pub(super) shapes: Vec<Shape>,
+    pub(super) lights: Vec<Light>,
+    pub(super) origins: Origins,
+    pub(super) texture_of: BTreeMap<usize, Outcome<Texture>>,
+    pub(super) material_of: BTreeMap<usize, Outcome<Material>>,
+    pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Image>>,
+    pub(super) mesh_of: BTreeMap<MeshKey, Handle<Mesh>>,
+    /// The material of shapes without one, and of lamps without one.
+    pub(super) default_materials: [Option<Handle<Material>>; 2],
+    nesting: usize,
+}
+
+impl<'t> Reader<'t> {
+    pub(super) fn new(
+        ids: &'t Ids<'t>,
+        log: &'t Log,
+        files: &'t dyn Files,
+        folders: &'t [PathBuf],
+        lenient: bool,
+        origins: Origins,
+    ) -> Self {
+        Self {
+            ids,
+            log,
+            files,
+            folders,
+            lenient,
+            textures: Textures::default(),
+            materials: Arena::default(),
+            meshes: Arena::default(),
+            shapes: Vec::new(),
+            lights: Vec::new(),
+            origins,
+            texture_of: BTreeMap::new(),
+            material_of: BTreeMap::new(),
+            image_of: BTreeMap::new(),
+            mesh_of: BTreeMap::new(),
+            default_materials: [None; 2],
+            nesting: 0,
+        }
+    }
+
+    pub(super) fn plugin(&self, element: &'t Element) -> Plugin<'t> {
+        Plugin::new(element, self.ids, self.log)
+    }
+
+    /// The bytes of a file that the scene names, and the path it was found at.
+    pub(super) fn read_file(&self, name: &str, at: &Location) -> Option<(PathBuf, Vec<u8>)> {
+        match find(self.files, self.folders, name) {
+            Ok(found) => Some(found),
+            Err(error) => {
+                self.log.error(at, format!("cannot read \"{}\": {error}", shortened(name)));
+                None
+            }
+        }
+    }
+
+    /// Says that something that the format has is not built yet, so that it is left out: an error
+    /// unless the caller is lenient.
+    pub(super) fn left_out(&self, at: &Location, what: &str) {
+        if self.lenient {
+            self.log.warn(at, format!("{what} cannot be rendered yet and is left out"));
+        } else {
+            let message = Diagnostic::error(at, format!("{what} cannot be rendered yet"));
+            self.log.push(message.hint("--lenient leaves it out"));
+        }
+    }
+
+    /// Says that a plugin's type is not one of the format.
+    pub(super) fn unknown_kind(&self, plugin: &Plugin, known: &[&[&'static str]]) {
+        let message = format!("unknown {} \"{}\"", plugin.element.tag, shortened(plugin.kind));
+        let known = known.iter().flat_map(|list| list.iter().copied());
+        self.log.push(Diagnostic::error(plugin.location(), message).did_you_mean(plugin.kind, known));
+    }
+
+    /// Does `work` one level deeper, unless that is too deep.
+    pub(super) fn nested<T>(
+        &mut self,
+        at: &Location,
+        work: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        if self.nesting >= MAX_NESTING {
+            self.log.error(at, format!("references are nested more than {MAX_NESTING} deep"));
+            return None;
+        }
+        self.nesting += 1;
+        let out = work(self);
+        self.nesting -= 1;
+        out
+    }
+
+    /// Reads every element of the scene but sensors and integrators.
+    pub(super) fn content(&mut self, elements: &'t [Element]) {
+        for element in elements {
+            match element.tag.as_str() {
+                "sensor" | "integrator" => {}
+                "shape" => self.shape(element),
+                "bsdf" => {
+                    self.material(element);
+                }
+                "emitter" => self.emitter(element),
+                "texture" => {
+                    self.texture(element);
+                }
+                "medium" => {
+                    let plugin = self.plugin(element);
+                    self.left_out(plugin.location(), &format!("medium \"{}\"", shortened(plugin.kind)));
+                }
+                // A property at this level belongs to nothing; a plugin waits for references to it.
+                tag if PROPERTY_TAGS.contains(&tag) => {
+                    self.log.error(&element.location, format!("<{tag}> has no place in <scene>"));
+                }
+                tag if OBJECT_TAGS.contains(&tag) => {}
+                tag => {
+                    let message = format!("unknown element <{}>", shortened(tag));
+                    let known = OBJECT_TAGS.iter().chain(&["include", "default", "path", "alias"]).copied();
+                    self.log.push(Diagnostic::error(&element.location, message).did_you_mean(tag, known));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! `<shape>` elements.
+
+use nephroid::handle::Handle;
+use nephroid::math::Vec3;
+use nephroid::shape::{Geometry, Mesh, Shape};
+use nephroid::texture::Texture;
+
+use super::document::Element;
+use super::names::{SHAPES, SHAPES_LATER};
+use super::parameters::shortened;
+use super::properties::Plugin;
+use super::reader::Reader;
+use super::spectrum::Role;
+use crate::diagnostic::Diagnostic;
+use crate::mesh::{MeshOptions, read_obj, read_ply};
+
+impl<'t> Reader<'t> {
+    /// Reads a `<shape>` into the scene; what is wrong goes to the log.
+    pub(super) fn shape(&mut self, element: &'t Element) {
+        let plugin = self.plugin(element);
+        let geometry = match plugin.kind {
+            "sphere" => self.sphere(&plugin),
+            "cylinder" => self.cylinder(&plugin),
+            "rectangle" => Some(Geometry::Rectangle),
+            "disk" => Some(Geometry::Disk),
+            "plane" => Some(Geometry::Plane),
+            "cube" => {
+                plugin.ignore(&["face_normals"]);
+                Some(Geometry::Cube)
+            }
+            "obj" | "ply" => self.mesh(&plugin).map(Geometry::Mesh),
+            kind if SHAPES_LATER.contains(&kind) => {
+                self.left_out(plugin.location(), &format!("shape \"{kind}\""));
+                return;
+            }
+            _ => {
+                self.unknown_kind(&plugin, &[SHAPES, SHAPES_LATER]);
+                return;
+            }
+        };
+        let to_world = plugin.transform("to_world");
+        let flip_normals = plugin.boolean("flip_normals", false);
+        plugin.ignore(&["silhouette_sampling_weight"]);
+        for (property, medium) in plugin.objects("medium") {
+            if medium.location == property.location {
+                let kind = medium.value_of("type").unwrap_or_default();
+                self.left_out(&property.location, &format!("medium \"{}\"", shortened(kind)));
+            } else {
+                self.left_out(&property.location, "the medium that the shape bounds");
+            }
+        }
+        let emission = self.emission(&plugin);
+        let material = match plugin.only_object("bsdf") {
+            Some(bsdf) => self.material(bsdf),
+            None => Some(self.default_material(&plugin, emission.is_some())),
+        };
+        plugin.finish();
+        let (Some(geometry), Some(material)) = (geometry, material) else { return };
+        self.origins.shapes.push(plugin.location().clone());
+        let name = plugin.name();
+        self.shapes.push(Shape { name, geometry, to_world, material, emission, flip_normals });
+    }
+
+    fn sphere(&self, plugin: &Plugin<'t>) -> Option<Geometry> {
+        let center = plugin.vector("center").unwrap_or(Vec3::ZERO);
+        Some(Geometry::Sphere { center, radius: plugin.positive("radius", 1.0) })
+    }
+
+    fn cylinder(&self, plugin: &Plugin<'t>) -> Option<Geometry> {
+        let p0 = plugin.vector("p0").unwrap_or(Vec3::ZERO);
+        let p1 = plugin.vector("p1").unwrap_or(Vec3::Z);
+        if p0 == p1 {
+            self.log
+                .error(plugin.location(), "the ends \"p0\" and \"p1\" of the cylinder are the same point");
+            return None;
+        }
+        Some(Geometry::Cylinder { p0, p1, radius: plugin.positive("radius", 1.0) })
+    }
+
+    /// The radiance of an area emitter inside a shape.
+    fn emission(&mut self, shape: &Plugin<'t>) -> Option<Handle<Texture>> {
+        let plugin = self.plugin(shape.only_object("emitter")?);
+        if plugin.kind != "area" {
+            let message = format!("a shape's emitter must be \"area\", not \"{}\"", shortened(plugin.kind));
+            self.log.error(plugin.location(), message);
+            return None;
+        }
+        let radiance = self.texture_property(&plugin, "radiance", 1.0, Role::Emission);
+        plugin.ignore(&["sampling_weight"]);
+        plugin.finish();
+        Some(radiance)
+    }
+
+    /// The mesh that `filename` names, read once for each way of reading it.
+    fn mesh(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Mesh>> {
+        let is_obj = plugin.kind == "obj";
+        let options = MeshOptions {
+            face_normals: plugin.boolean("face_normals", false),
+            flip_tex_coords: plugin.boolean("flip_tex_coords", is_obj),
+        };
+        let Some((name, at)) = plugin.text("filename") else {
+            if !plugin.has("filename") {
+                self.log.error(plugin.location(), format!("shape \"{}\" lacks a filename", plugin.kind));
+            }
+            return None;
+        };
+        let (path, bytes) = self.read_file(name, at)?;
+        let key = (path.clone(), options.face_normals, options.flip_tex_coords);
+        if let Some(handle) = self.mesh_of.get(&key) {
+            return Some(*handle);
+        }
+        let read = if is_obj { read_obj(&bytes, options) } else { read_ply(&bytes, options) };
+        match read {
+            Ok(file) => {
+                if file.degenerate > 0 {
+                    let faces = if file.degenerate == 1 { "triangle" } else { "triangles" };
+                    let message =
+                        format!("{}: left out {} {faces} without area", path.display(), file.degenerate);
+                    self.log.warn(at, message);
+                }
+                let handle = self.meshes.push(file.mesh);
+                self.mesh_of.insert(key, handle);
+                Some(handle)
+            }
+            Err(error) => {
+                let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
+                let message = format!("{}{line}: {}", path.display(), error.message);
+                self.log.push(Diagnostic::error(at, message));
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Colours and textures.
+
+use nephroid::color::Rgb;
+use nephroid::handle::Handle;
+use nephroid::math::{Affine2, Transform, Vec2};
+use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Image, Texture, Wrap};
+
+use super::document::Element;
+use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
+use super::parameters::shortened;
+use super::properties::{Plugin, Property, Value};
+use super::reader::{Outcome, Reader};
+use super::spectrum::{Role, Spectrum};
+use crate::diagnostic::Location;
+
+/// A colour, or a texture that was read.
+enum Paint {
+    Flat(Rgb),
+    Varied(Handle<Texture>),
+}
+
+impl<'t> Reader<'t> {
+    /// A property that may be a texture.
+    pub(super) fn texture_property(
+        &mut self,
+        plugin: &Plugin<'t>,
+        name: &'static str,
+        default: f32,
+        role: Role,
+    ) -> Handle<Texture> {
+        match self.paint(plugin, name, default, role) {
+            Paint::Flat(color) => self.textures.constant(color),
+            Paint::Varied(texture) => texture,
+        }
+    }
+
+    /// A property that must be one colour.
+    pub(super) fn color_property(
+        &mut self,
+        plugin: &Plugin<'t>,
+        name: &'static str,
+        default: f32,
+        role: Role,
+    ) -> Rgb {
+        match self.paint(plugin, name, default, role) {
+            Paint::Flat(color) => color,
+            Paint::Varied(texture) => {
+                if let (Some(property), false) =
+                    (plugin.property(name), matches!(self.textures.list[texture], Texture::Constant(_)))
+                {
+                    self.log
+                        .error(&property.location, format!("\"{name}\" must be one colour, not a texture"));
+                }
+                self.textures.mean(texture)
+            }
+        }
+    }
+
+    fn paint(&mut self, plugin: &Plugin<'t>, name: &'static str, default: f32, role: Role) -> Paint {
+        let Some(property) = plugin.property(name) else { return Paint::Flat(Rgb::splat(default)) };
+        let flat = match &property.value {
+            Value::Float(v) => Rgb::splat(*v as f32),
+            Value::Integer(v) => Rgb::splat(*v as f32),
+            Value::Color(channels) => Rgb::from(channels.map(|v| v as f32)),
+            Value::Spectrum(spectrum) => self.spectrum_color(spectrum, role, property),
+            Value::SpectrumFile(file) => match self.spectrum_file(file, &property.location) {
+                Some(spectrum) => self.spectrum_color(&spectrum, role, property),
+                None => Rgb::splat(default),
+            },
+            Value::Object(element) if element.tag == "spectrum" => self.spectrum_plugin(element),
+            Value::Object(element) if element.tag == "texture" => {
+                return match self.texture(element) {
+                    Some(texture) => Paint::Varied(texture),
+                    None => Paint::Flat(Rgb::splat(default)),
+                };
+            }
+            _ => {
+                plugin.wrong_type(property, "a colour or texture");
+                Rgb::splat(default)
+            }
+        };
+        Paint::Flat(flat)
+    }
+
+    fn spectrum_color(&self, spectrum: &Spectrum, role: Role, property: &Property) -> Rgb {
+        let rgb = spectrum.to_rgb(role);
+        if !rgb.is_finite() {
+            self.log.error(&property.location, "the colour of the spectrum is not finite");
+            return Rgb::BLACK;
+        }
+        rgb
+    }
+
+    fn spectrum_file(&self, file: &str, at: &Location) -> Option<Spectrum> {
+        let (_, bytes) = self.read_file(file, at)?;
+        match Spectrum::parse_file(&String::from_utf8_lossy(&bytes)) {
+            Ok(spectrum) => Some(spectrum),
+            Err(message) => {
+                self.log.error(at, format!("\"{}\": {message}", shortened(file)));
+                None
+            }
+        }
+    }
+
+    /// `<spectrum type="…">`: the two kinds that are one colour by themselves.
+    fn spectrum_plugin(&mut self, element: &'t Element) -> Rgb {
+        let plugin = self.plugin(element);
+        let color = match plugin.kind {
+            "uniform" => self.color_property(&plugin, "value", 1.0, Role::Reflectance),
+            "d65" => {
+                let color = self.color_property(&plugin, "color", 1.0, Role::Reflectance);
+                color * plugin.float("scale", 1.0)
+            }
+            kind if SPECTRA_LATER.contains(&kind) => {
+                self.log.error(plugin.location(), format!("spectrum \"{kind}\" cannot be rendered yet"));
+                return Rgb::splat(0.5);
+            }
+            _ => {
+                self.unknown_kind(&plugin, &[&["uniform", "d65"], SPECTRA_LATER]);
+                return Rgb::splat(0.5);
+            }
+        };
+        plugin.finish();
+        color
+    }
+
+    /// A `<texture>`, read once however often it is referred to. `None` if the log says why.
+    pub(super) fn texture(&mut self, element: &'t Element) -> Option<Handle<Texture>> {
+        match self.texture_of.get(&element.number) {
+            Some(Outcome::Done(handle)) => return Some(*handle),
+            Some(Outcome::Failed) => return None,
+            Some(Outcome::Open) => {
+                self.log.error(&element.location, "the texture refers to itself");
+                return None;
+            }
+            None => {}
+        }
+        self.texture_of.insert(element.number, Outcome::Open);
+        let texture = self.nested(&element.location, |reader| reader.new_texture(element));
+        let handle = texture.map(|texture| self.textures.push(texture));
+        self.texture_of.insert(element.number, handle.map_or(Outcome::Failed, Outcome::Done));
+        handle
+    }
+
+    fn new_texture(&mut self, element: &'t Element) -> Option<Texture> {
+        let plugin = self.plugin(element);
+        let texture = match plugin.kind {
+            "bitmap" => self.bitmap(&plugin)?,
+            "checkerboard" => {
+                let color0 = self.texture_property(&plugin, "color0", 0.4, Role::Reflectance);
+                let color1 = self.texture_property(&plugin, "color1", 0.2, Role::Reflectance);
+                let to_uv = flat_transform(&plugin.transform("to_uv"));
+                Texture::Checkerboard(Checkerboard { color0, color1, to_uv })
+            }
+            kind if TEXTURES_LATER.contains(&kind) => {
+                let message =
+                    format!("texture \"{kind}\" cannot be rendered yet; it becomes plain grey (0.5)");
+                self.log.warn(plugin.location(), message);
+                plugin.finish_approximated();
+                return Some(Texture::Constant(Rgb::splat(0.5)));
+            }
+            _ => {
+                self.unknown_kind(&plugin, &[TEXTURES, TEXTURES_LATER]);
+                return None;
+            }
+        };
+        plugin.finish();
+        Some(texture)
+    }
+
+    fn bitmap(&mut self, plugin: &Plugin<'t>) -> Option<Texture> {
+        let raw = plugin.boolean("raw", false);
+        let filters = [("bilinear", BitmapFilter::Bilinear), ("nearest", BitmapFilter::Nearest)];
+        let filter = plugin.choice("filter_type", BitmapFilter::Bilinear, &filters);
+        let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
+        let wrap = plugin.choice("wrap_mode", Wrap::Repeat, &wraps);
+        let to_uv = flat_transform(&plugin.transform("to_uv"));
+        plugin.ignore(&["accel", "format"]);
+        let image = self.image_property(plugin, raw)?;
+        Some(Texture::Bitmap(Bitmap { image, filter, wrap, to_uv }))
+    }
+
+    /// The image that a plugin's `filename` names, read once for each way of decoding.
+    pub(super) fn image_property(&mut self, plugin: &Plugin<'t>, raw: bool) -> Option<Handle<Image>> {
+        let Some((name, at)) = plugin.text("filename") else {
+            if !plugin.has("filename") {
+                let message = format!("{} \"{}\" lacks a filename", plugin.element.tag, plugin.kind);
+                self.log.error(plugin.location(), message);
+            }
+            return None;
+        };
+        let (path, bytes) = self.read_file(name, at)?;
+        if let Some(handle) = self.image_of.get(&(path.clone(), raw)) {
+            return Some(*handle);
+        }
+        match read_texture(&bytes, raw) {
+            Ok(image) => {
+                let handle = self.textures.images.push(image);
+                self.image_of.insert((path, raw), handle);
+                Some(handle)
+            }
+            Err(message) => {
+                self.log.error(at, format!("cannot use \"{}\": {message}", path.display()));
+                None
+            }
+        }
+    }
+}
+
+/// The part of a transform that concerns `u` and `v`.
+fn flat_transform(transform: &Transform) -> Affine2 {
+    let (m, t) = (transform.0.matrix3, transform.0.translation);
+    let flat = |v: nephroid::math::DVec3| Vec2::new(v.x as f32, v.y as f32);
+    let (x, y, offset) = (flat(m.x_axis), flat(m.y_axis), flat(t));
+    let mut out = Affine2::IDENTITY;
+    out.matrix2.x_axis = x;
+    out.matrix2.y_axis = y;
+    out.translation = offset;
+    out
+}
+
+/// Longest side of an image.
+const MAX_SIDE: u32 = 65_536;
+
+/// An image in linear colour; `raw` leaves 8 and 16 bit values as they are.
+fn read_texture(bytes: &[u8], raw: bool) -> Result<Image, String> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        return read_exr(bytes);
+    }
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|error| error.to_string())?;
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    reader.limits(limits);
+    let decoded = reader.decode().map_err(|error| error.to_string())?;
+    let linear =
+        matches!(decoded, image::DynamicImage::ImageRgb32F(_) | image::DynamicImage::ImageRgba32F(_));
+    let rgb = decoded.into_rgb32f();
+    let decode = |v: f32| if raw || linear { v } else { nephroid::color::srgb::decode(v) };
+    let pixels: Vec<Rgb> = rgb.pixels().map(|p| Rgb::from(p.0).map(decode)).collect();
+    Ok(Image { width: rgb.width(), height: rgb.height(), pixels })
+}
+
+fn read_exr(bytes: &[u8]) -> Result<Image, String> {
+    use exr::prelude::{MetaData, ReadChannels, ReadLayers, read};
+    let meta = MetaData::read_from_buffered(std::io::Cursor::new(bytes), true).map_err(|e| e.to_string())?;
+    if meta.headers.iter().any(|h| h.layer_size.0.max(h.layer_size.1) > MAX_SIDE as usize) {
+        return Err(format!("a side is longer than {MAX_SIDE} pixels"));
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| Image::filled(size.width() as u32, size.height() as u32, Rgb::BLACK),
+            |image: &mut Image, at, (r, g, b): (f32, f32, f32)| {
+                let index = at.y() * image.width as usize + at.x();
+                image.pixels[index] = Rgb::new(r, g, b);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(std::io::Cursor::new(bytes))
+        .map_err(|e| e.to_string())?;
+    Ok(image.layer_data.channel_data.pixels)
+}
