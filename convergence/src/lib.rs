@@ -5,16 +5,19 @@ use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{Crop, FilmSettings, Filter};
 use nephroid::handle::{Arena, Handle};
-use nephroid::integrator::Method;
+use nephroid::integrator::{DirectSource, FinalGather, Method, PhotonMapperConfig};
 use nephroid::light::{Light, LightKind};
 use nephroid::material::{Material, Metal};
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::observer::Silent;
+use nephroid::photon_map::Kernel;
 use nephroid::scene::Scene;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
+use nephroid::transport::{MapPlan, PhotonPass, PhotonPlan, WalkSettings, photon_pass};
 use nephroid::world::World;
+use std::ops::Range;
 
 /// A scene under construction.
 pub struct Builder {
@@ -147,4 +150,52 @@ pub fn session(world: &World, method: Method, samples_per_pixel: u32, seed: u64)
         assert!(session.step(&Silent), "nothing cancels");
     }
     session
+}
+
+/// Mean of all pixels and channels of a picture, in double precision.
+pub fn picture_mean(image: &Image) -> f64 {
+    let sum: f64 = image.pixels.iter().flat_map(|p| p.to_array()).map(f64::from).sum();
+    sum / (3 * image.pixels.len()) as f64
+}
+
+/// The [means](picture_mean) of one-iteration pictures with different seeds: independent estimates.
+pub fn means(world: &World, method: &Method, samples_per_pixel: u32, seeds: Range<u64>) -> Vec<f64> {
+    seeds.map(|seed| picture_mean(&render(world, method.clone(), samples_per_pixel, seed))).collect()
+}
+
+/// The photons of one iteration of so many paths, those of direct light with the global ones.
+///
+/// # Panics
+/// Never: nothing cancels it.
+pub fn photons(world: &World, settings: &WalkSettings, paths: u64, seed: u64) -> PhotonPass {
+    let map = MapPlan { paths, ..MapPlan::default() };
+    let plan = PhotonPlan { global: map, caustic: map };
+    photon_pass(world, settings, &plan, true, seed, 0, &Silent).expect("nothing cancels")
+}
+
+/// Every combination of kernel, bandwidth, source of direct light and final gathering, named, with
+/// the other settings from `base`, which must have a `radius`: half of them use it, the other half
+/// its `neighbours`.
+pub fn photon_mapper_variants(base: &PhotonMapperConfig) -> Vec<(String, Method)> {
+    let kernels = [
+        Kernel::Box,
+        Kernel::Cone { k: 1.0 },
+        Kernel::Cone { k: 1.5 },
+        Kernel::Gaussian,
+        Kernel::Epanechnikov,
+        Kernel::Biweight,
+    ];
+    let mut variants = Vec::new();
+    for kernel in kernels {
+        for radius in [None, base.radius] {
+            for direct in [DirectSource::Rays, DirectSource::Map] {
+                for final_gather in [FinalGather::Off, FinalGather::Auto, FinalGather::Rays(4)] {
+                    let name = format!("{kernel}, radius {radius:?}, {direct:?}, gather {final_gather:?}");
+                    let config = PhotonMapperConfig { kernel, radius, direct, final_gather, ..base.clone() };
+                    variants.push((name, Method::PhotonMapper(config)));
+                }
+            }
+        }
+    }
+    variants
 }

@@ -347,8 +347,8 @@ fn scatter(
     sampler: &mut Sampler,
 ) -> Option<(Ray, Rgb)> {
     let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-    let BsdfSample { wi, weight, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
+    let BsdfSample { wi, weight, radiance_scale, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
     let carried = throughput * weight;
-    let q = survival(throughput, carried, bounces);
+    let q = survival(throughput, carried / radiance_scale, bounces);
     (u_survive < q).then(|| (leave(point, wi), carried / q))
 }
