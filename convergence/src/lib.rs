@@ -1,6 +1,12 @@
 //! Scenes built in code and renders of them, for the tests in `tests/`: every estimator against its
 //! closed form, and integrators against one another.
 
+mod optics;
+mod view;
+
+pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
+pub use view::{block_means, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders};
+
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{Crop, FilmSettings, Filter};
