@@ -1,6 +1,8 @@
 //! Cameras: from a point of the picture to a ray.
 
-use crate::math::{Transform, Vec2};
+use crate::film::FilmSettings;
+use crate::math::real::tan;
+use crate::math::{Ray, Transform, Vec2, Vec3};
 
 /// Where the picture is taken from. In camera space `+z` looks ahead, `+x` points to the left of
 /// the picture and `+y` up.
@@ -42,4 +44,106 @@ pub enum FovAxis {
     Smaller,
     /// The longer side.
     Larger,
+}
+
+/// A camera made ready for a film: maps positions on the film to rays.
+#[derive(Clone, Debug)]
+pub(crate) struct CameraRays {
+    to_world: Transform,
+    projection: Projection,
+    /// Whole picture in pixels.
+    size: Vec2,
+    /// Half-extent of the picture at distance 1 (perspective) or in camera space (orthographic).
+    half: Vec2,
+    offset: Vec2,
+}
+
+impl CameraRays {
+    /// `camera` and `film` must have passed the checks of the world.
+    pub fn new(camera: &Camera, film: &FilmSettings) -> Self {
+        let (w, h) = (film.width as f32, film.height as f32);
+        let (half, offset) = match camera.projection {
+            Projection::Orthographic => (Vec2::new(1.0, h / w), Vec2::ZERO),
+            Projection::Perspective { fov_deg, fov_axis, principal_point_offset } => {
+                let tan = tan((0.5 * fov_deg).to_radians());
+                let half_width = match fov_axis {
+                    FovAxis::X => tan,
+                    FovAxis::Y => tan * w / h,
+                    FovAxis::Diagonal => tan * w / (w * w + h * h).sqrt(),
+                    FovAxis::Smaller => tan * if w <= h { 1.0 } else { w / h },
+                    FovAxis::Larger => tan * if w >= h { 1.0 } else { w / h },
+                };
+                (Vec2::new(half_width, half_width * h / w), principal_point_offset)
+            }
+        };
+        Self { to_world: camera.to_world, projection: camera.projection, size: Vec2::new(w, h), half, offset }
+    }
+
+    /// The ray through a position of the whole picture, in pixels from its upper left corner.
+    pub fn ray(&self, film_position: Vec2) -> Ray {
+        let p = film_position / self.size + self.offset;
+        // Left and up are positive in camera space.
+        let q = (Vec2::ONE - 2.0 * p) * self.half;
+        let (origin, direction) = match self.projection {
+            Projection::Perspective { .. } => (Vec3::ZERO, Vec3::new(q.x, q.y, 1.0)),
+            Projection::Orthographic => (Vec3::new(q.x, q.y, 0.0), Vec3::Z),
+        };
+        Ray::new(self.to_world.point(origin), self.to_world.vector(direction).normalize())
+    }
+
+    /// Where the camera stands.
+    pub fn position(&self) -> Vec3 {
+        self.to_world.point(Vec3::ZERO)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Filter;
+    use crate::math::DVec3;
+
+    fn rays(projection: Projection, width: u32, height: u32) -> CameraRays {
+        let to_world = Transform::look_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, DVec3::Y).unwrap();
+        let film = FilmSettings { width, height, crop: None, filter: Filter::Box };
+        CameraRays::new(&Camera { to_world, projection }, &film)
+    }
+
+    fn perspective(fov_axis: FovAxis, offset: Vec2) -> Projection {
+        Projection::Perspective { fov_deg: 90.0, fov_axis, principal_point_offset: offset }
+    }
+
+    #[test]
+    fn the_axis_of_the_field_of_view_reaches_the_edge_at_its_angle() {
+        for (axis, x, y) in [
+            (FovAxis::X, 1.0, 0.5),
+            (FovAxis::Larger, 1.0, 0.5),
+            (FovAxis::Y, 2.0, 1.0),
+            (FovAxis::Smaller, 2.0, 1.0),
+            (FovAxis::Diagonal, 2.0 / 5.0f32.sqrt(), 1.0 / 5.0f32.sqrt()),
+        ] {
+            // The upper right corner: right is +x of the world, as the camera looks along −z.
+            let d = rays(perspective(axis, Vec2::ZERO), 400, 200).ray(Vec2::new(400.0, 0.0)).direction;
+            let d = d / -d.z;
+            assert!((d.x - x).abs() < 1e-5 && (d.y - y).abs() < 1e-5, "{axis:?}: {d}");
+        }
+    }
+
+    #[test]
+    fn the_middle_looks_ahead_and_the_principal_point_moves_it() {
+        let centre = Vec2::new(200.0, 100.0);
+        let ray = rays(perspective(FovAxis::X, Vec2::ZERO), 400, 200).ray(centre);
+        assert_eq!((ray.origin, ray.direction), (Vec3::new(0.0, 0.0, 4.0), -Vec3::Z));
+        let shifted = rays(perspective(FovAxis::X, Vec2::new(0.1, 0.0)), 400, 200);
+        let direction = shifted.ray(centre - Vec2::new(40.0, 0.0)).direction;
+        assert!((direction + Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel_and_the_width_spans_two() {
+        let camera = rays(Projection::Orthographic, 400, 200);
+        let (a, b) = (camera.ray(Vec2::new(0.0, 0.0)), camera.ray(Vec2::new(400.0, 200.0)));
+        assert_eq!((a.direction, b.direction), (-Vec3::Z, -Vec3::Z));
+        assert_eq!((a.origin, b.origin), (Vec3::new(-1.0, 0.5, 4.0), Vec3::new(1.0, -0.5, 4.0)));
+    }
 }

@@ -1,8 +1,17 @@
 //! The film: exact sums of radiance, reconstruction filters and tone mapping.
 
+mod error;
 mod filter;
+mod filter_sampler;
+mod fixed;
+mod sums;
+mod tonemap;
 
+pub use error::{ImageError, SizeMismatch, difference_picture};
 pub use filter::Filter;
+pub use filter_sampler::{FilterSample, FilterSampler};
+pub use sums::{Film, FilmCounts, PixelSum, PixelTotal};
+pub use tonemap::{Equalization, ToneMap, ToneMapError, White};
 
 /// Size and sampling of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

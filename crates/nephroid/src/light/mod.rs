@@ -1,6 +1,17 @@
 //! Lights. A [`Light`] is what the scene says of a light without a surface; area lights are shapes
 //! with an emission. Either becomes an emitter of the world.
 
+mod area;
+mod emitter;
+mod environment;
+mod spot;
+
+pub(crate) use area::AreaEmitter;
+pub use emitter::{Emission, Incident, Source, SphereSampling};
+pub(crate) use emitter::{Emitter, EmitterKind, Lookup, Target};
+pub(crate) use environment::{ConstantSky, EnvironmentMap};
+pub(crate) use spot::Spot;
+
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Transform, Vec3};

@@ -15,7 +15,7 @@ impl Bounds {
 
     /// The smallest box around the points.
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |b, p| b.with(p))
+        points.into_iter().fold(Self::EMPTY, Self::with)
     }
 
     /// Grown to contain `p`.

@@ -1,5 +1,11 @@
 //! A scene: plain data, after references, units and defaults of its file are resolved.
 
+mod check;
+mod error;
+
+pub(crate) use check::check;
+pub use error::{SceneError, SceneErrors, Subject};
+
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::handle::Arena;

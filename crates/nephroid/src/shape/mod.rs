@@ -1,12 +1,20 @@
 //! Shapes: what a scene's surfaces are made of.
 
+mod cylinder;
+mod flat;
 mod mesh;
+mod primitive;
+mod sphere;
+mod triangle;
 
 pub use mesh::Mesh;
+pub(crate) use primitive::Primitive;
+pub(crate) use sphere::Sphere;
+pub(crate) use triangle::ShearedRay;
 
 use crate::handle::Handle;
 use crate::material::Material;
-use crate::math::{Transform, Vec3};
+use crate::math::{Transform, Vec2, Vec3};
 use crate::texture::Texture;
 
 /// A surface of the scene.
@@ -55,4 +63,35 @@ pub enum Geometry {
     Plane,
     /// Triangles.
     Mesh(Handle<Mesh>),
+}
+
+/// Where a ray meets a primitive: the ray parameter and two coordinates the primitive understands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Intersection {
+    pub t: f32,
+    pub u: f32,
+    pub v: f32,
+}
+
+/// The geometry of a surface at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Where.
+    pub position: Vec3,
+    /// Bounds the error of each coordinate of the position.
+    pub error: Vec3,
+    /// Unit normal of the surface, on the side the shape's normals point to.
+    pub ng: Vec3,
+    /// Unit normal for shading, interpolated over a mesh; within a right angle of `ng`.
+    pub ns: Vec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+}
+
+impl SurfacePoint {
+    /// The same point with its normals turned around.
+    #[must_use]
+    pub fn flipped(self) -> Self {
+        Self { ng: -self.ng, ns: -self.ns, ..self }
+    }
 }

@@ -1,0 +1,150 @@
+//! Scenes built in code and renders of them, for the tests in `tests/`: every estimator against its
+//! closed form, and integrators against one another.
+
+use nephroid::camera::{Camera, FovAxis, Projection};
+use nephroid::color::Rgb;
+use nephroid::film::{Crop, FilmSettings, Filter};
+use nephroid::handle::{Arena, Handle};
+use nephroid::integrator::Method;
+use nephroid::light::{Light, LightKind};
+use nephroid::material::{Material, Metal};
+use nephroid::math::{DVec3, Transform, Vec2, Vec3};
+use nephroid::observer::Silent;
+use nephroid::scene::Scene;
+use nephroid::session::{RenderSettings, Session};
+use nephroid::shape::{Geometry, Mesh, Shape};
+use nephroid::texture::{Image, Texture, Textures};
+use nephroid::world::World;
+
+/// A scene under construction.
+pub struct Builder {
+    /// What has been built so far.
+    pub scene: Scene,
+}
+
+impl Builder {
+    /// An empty scene seen from `origin` towards `target`, through an angle of `fov_deg` on a square
+    /// film of `side` pixels.
+    ///
+    /// # Panics
+    /// If the camera looks along its up direction, +y, or +z where it looks along y.
+    pub fn seen_from(origin: Vec3, target: Vec3, fov_deg: f32, side: u32) -> Self {
+        let (o, t) = (origin.as_dvec3(), target.as_dvec3());
+        let to_world = Transform::look_at(o, t, DVec3::Y)
+            .or_else(|| Transform::look_at(o, t, DVec3::Z))
+            .expect("origin and target differ");
+        let projection =
+            Projection::Perspective { fov_deg, fov_axis: FovAxis::X, principal_point_offset: Vec2::ZERO };
+        Self {
+            scene: Scene {
+                camera: Camera { to_world, projection },
+                film: FilmSettings { width: side, height: side, crop: None::<Crop>, filter: Filter::Box },
+                textures: Textures::default(),
+                materials: Arena::default(),
+                meshes: Arena::default(),
+                shapes: Vec::new(),
+                lights: Vec::new(),
+            },
+        }
+    }
+
+    /// A constant texture.
+    pub fn constant(&mut self, value: f32) -> Handle<Texture> {
+        self.scene.textures.constant(Rgb::splat(value))
+    }
+
+    /// A grey Lambertian material.
+    pub fn diffuse(&mut self, albedo: f32) -> Handle<Material> {
+        let reflectance = self.constant(albedo);
+        self.scene.materials.push(Material::Diffuse { reflectance })
+    }
+
+    /// A mirror of a given reflectance.
+    pub fn mirror(&mut self, reflectance: f32) -> Handle<Material> {
+        let specular_reflectance = self.constant(reflectance);
+        self.scene.materials.push(Material::Conductor { metal: Metal::PerfectMirror, specular_reflectance })
+    }
+
+    /// Smooth glass of index `ior` in air.
+    pub fn glass(&mut self, ior: f32) -> Handle<Material> {
+        let one = self.constant(1.0);
+        self.scene.materials.push(Material::Dielectric {
+            int_ior: ior,
+            ext_ior: 1.0,
+            specular_reflectance: one,
+            specular_transmittance: one,
+        })
+    }
+
+    /// The same material on both sides.
+    pub fn two_sided(&mut self, material: Handle<Material>) -> Handle<Material> {
+        self.scene.materials.push(Material::TwoSided { front: material, back: material })
+    }
+
+    /// Adds a shape, and lets it be changed further.
+    pub fn shape(
+        &mut self,
+        geometry: Geometry,
+        to_world: Transform,
+        material: Handle<Material>,
+    ) -> &mut Shape {
+        let name = format!("shape {}", self.scene.shapes.len());
+        self.scene.shapes.push(Shape {
+            name,
+            geometry,
+            to_world,
+            material,
+            emission: None,
+            flip_normals: false,
+        });
+        self.scene.shapes.last_mut().expect("just pushed")
+    }
+
+    /// Adds a sphere.
+    pub fn sphere(&mut self, center: Vec3, radius: f32, material: Handle<Material>) -> &mut Shape {
+        self.shape(Geometry::Sphere { center, radius }, Transform::IDENTITY, material)
+    }
+
+    /// Adds a mesh.
+    pub fn mesh(&mut self, mesh: Mesh, material: Handle<Material>) -> &mut Shape {
+        let handle = self.scene.meshes.push(mesh);
+        self.shape(Geometry::Mesh(handle), Transform::IDENTITY, material)
+    }
+
+    /// Adds a light without a surface.
+    pub fn light(&mut self, kind: LightKind) {
+        let name = format!("light {}", self.scene.lights.len());
+        self.scene.lights.push(Light { name, kind });
+    }
+
+    /// Adds a point light of a given intensity in W/sr.
+    pub fn point_light(&mut self, position: Vec3, intensity: f32) {
+        self.light(LightKind::Point { position, intensity: Rgb::splat(intensity) });
+    }
+
+    /// The world.
+    ///
+    /// # Panics
+    /// If the scene has a problem.
+    pub fn build(self) -> World {
+        World::new(self.scene).expect("a sound scene")
+    }
+}
+
+/// Renders one iteration.
+pub fn render(world: &World, method: Method, samples_per_pixel: u32, seed: u64) -> Image {
+    session(world, method, samples_per_pixel, seed).film().develop()
+}
+
+/// Renders one iteration and keeps the session.
+///
+/// # Panics
+/// Never: nothing cancels it.
+pub fn session(world: &World, method: Method, samples_per_pixel: u32, seed: u64) -> Session<'_> {
+    let settings = RenderSettings { method, samples_per_pixel, seed };
+    let mut session = Session::new(world, settings, &Silent);
+    while !session.iteration_is_complete() {
+        assert!(session.step(&Silent), "nothing cancels");
+    }
+    session
+}

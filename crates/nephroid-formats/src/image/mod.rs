@@ -1,0 +1,121 @@
+//! Image files: OpenEXR, PNG, JPEG and Radiance HDR in, OpenEXR and PNG out.
+//!
+//! Which format a file has is told by its first bytes, never by its name. Nothing is allocated on
+//! the word of a header before the length of the file makes it plausible.
+
+mod error;
+mod limits;
+mod output;
+mod raster;
+mod read_exr;
+mod write_exr;
+mod write_png;
+
+#[cfg(test)]
+mod damage_tests;
+#[cfg(test)]
+mod read_tests;
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use nephroid::color::Rgb;
+use nephroid::texture::Image;
+
+pub use error::{ImageError, ImageProblem};
+pub use limits::{MAX_PIXELS, MAX_SIDE};
+pub use output::check_writable;
+pub use write_exr::{Layer, LayerData, encode_exr, write_exr};
+pub use write_png::{encode_png, write_png};
+
+/// The formats that can be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageFormat {
+    /// OpenEXR: half, float or integer channels, linear.
+    Exr,
+    /// PNG: 1 to 16 bits, grey, palette or colour.
+    Png,
+    /// JPEG.
+    Jpeg,
+    /// Radiance HDR (RGBE), linear. Its `EXPOSURE` line is not applied.
+    Hdr,
+}
+
+impl ImageFormat {
+    /// Its name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exr => "OpenEXR",
+            Self::Png => "PNG",
+            Self::Jpeg => "JPEG",
+            Self::Hdr => "Radiance HDR",
+        }
+    }
+
+    /// The format that a file starts as.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let starts = |magic: &[u8]| bytes.starts_with(magic);
+        match () {
+            () if starts(&[0x76, 0x2f, 0x31, 0x01]) => Some(Self::Exr),
+            () if starts(b"\x89PNG\r\n\x1a\n") => Some(Self::Png),
+            () if starts(&[0xff, 0xd8, 0xff]) => Some(Self::Jpeg),
+            () if starts(b"#?") => Some(Self::Hdr),
+            () => None,
+        }
+    }
+}
+
+/// An image as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageFile {
+    /// Its pixels. Grey is repeated in all channels; alpha is left out, not multiplied in.
+    pub image: Image,
+    /// What the file was.
+    pub format: ImageFormat,
+    /// Pixels of which the file has a channel that is NaN or infinite.
+    pub non_finite: usize,
+}
+
+/// Reads an image as linear colours; PNG and JPEG are decoded with the curve of sRGB. Pixels that
+/// are not finite stay as they are, and are counted.
+pub fn read_image(path: &Path) -> Result<ImageFile, ImageError> {
+    let read = || {
+        let metadata = fs::metadata(path).map_err(ImageProblem::Read)?;
+        if !metadata.is_file() {
+            return Err(ImageProblem::NotAFile);
+        }
+        read_image_bytes(&fs::read(path).map_err(ImageProblem::Read)?)
+    };
+    read().map_err(|problem| ImageError { path: path.to_owned(), problem })
+}
+
+/// [`read_image`] of the contents of a file.
+pub fn read_image_bytes(bytes: &[u8]) -> Result<ImageFile, ImageProblem> {
+    decode(bytes, false)
+}
+
+/// Reads an image for use on a surface or as an environment. With `raw` the numbers of a PNG or
+/// JPEG are taken as they are, from 0 to 1; without it they are decoded with the curve of sRGB.
+/// Pixels that are not finite become black, and are counted.
+pub fn read_texture(bytes: &[u8], raw: bool) -> Result<ImageFile, ImageProblem> {
+    let mut file = decode(bytes, raw)?;
+    for pixel in file.image.pixels.iter_mut().filter(|p| !p.is_finite()) {
+        *pixel = Rgb::BLACK;
+    }
+    Ok(file)
+}
+
+fn decode(bytes: &[u8], raw: bool) -> Result<ImageFile, ImageProblem> {
+    let format = ImageFormat::of(bytes).ok_or_else(|| ImageProblem::unknown_format(bytes))?;
+    let decoder = || match format {
+        ImageFormat::Exr => read_exr::decode(bytes),
+        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr => raster::decode(bytes, format, raw),
+    };
+    // The decoders are other people's code on other people's bytes: should one give up in a panic,
+    // the file is to blame and the program lives on.
+    let image = catch_unwind(AssertUnwindSafe(decoder))
+        .unwrap_or_else(|_| Err(ImageProblem::Damaged { format, reason: "it makes no sense".to_owned() }))?;
+    let non_finite = image.pixels.iter().filter(|p| !p.is_finite()).count();
+    Ok(ImageFile { image, format, non_finite })
+}

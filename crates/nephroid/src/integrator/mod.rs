@@ -1,0 +1,102 @@
+//! Integrators: each a configuration and one iteration.
+
+mod path;
+mod photon_mapper;
+
+pub use path::PathConfig;
+pub(crate) use path::radiance as path_radiance;
+pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show};
+pub(crate) use photon_mapper::{Maps, PhotonMapper, Scratch};
+
+use crate::color::Rgb;
+
+/// The integrators and their configurations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Method {
+    /// Two-pass photon mapping.
+    PhotonMapper(PhotonMapperConfig),
+    /// Unbiased path tracing, the reference for surfaces.
+    Path(PathConfig),
+}
+
+impl Method {
+    /// The name in scene files and on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::PhotonMapper(_) => "photonmapper",
+            Self::Path(_) => "path",
+        }
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Self::PhotonMapper(PhotonMapperConfig::default())
+    }
+}
+
+/// Radiance by the kind of path that brought it, in W/(m²·sr).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Components {
+    /// Lamps and sky seen directly or through specular surfaces.
+    pub emitted: Rgb,
+    /// Light that met one surface that is not specular, and came straight to it.
+    pub direct: Rgb,
+    /// All other light.
+    pub global: Rgb,
+    /// Light that came to such a surface by specular ones.
+    pub caustic: Rgb,
+}
+
+/// Sums of [`Components`] over a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PictureSums {
+    /// Lamps and sky.
+    pub emitted: [f64; 3],
+    /// Direct light.
+    pub direct: [f64; 3],
+    /// Indirect light.
+    pub global: [f64; 3],
+    /// Caustics.
+    pub caustic: [f64; 3],
+    /// Camera samples that were summed.
+    pub samples: u64,
+}
+
+impl PictureSums {
+    pub(crate) fn add(&mut self, c: &Components) {
+        for (sum, value) in [
+            (&mut self.emitted, c.emitted),
+            (&mut self.direct, c.direct),
+            (&mut self.global, c.global),
+            (&mut self.caustic, c.caustic),
+        ] {
+            for (s, v) in sum.iter_mut().zip(value.to_array()) {
+                *s += f64::from(v);
+            }
+        }
+        self.samples += 1;
+    }
+
+    pub(crate) fn append(&mut self, more: &Self) {
+        for (sum, value) in [
+            (&mut self.emitted, more.emitted),
+            (&mut self.direct, more.direct),
+            (&mut self.global, more.global),
+            (&mut self.caustic, more.caustic),
+        ] {
+            for (s, v) in sum.iter_mut().zip(value) {
+                *s += v;
+            }
+        }
+        self.samples += more.samples;
+    }
+
+    /// Direct over indirect (global and caustic) light of the picture, channels averaged: 1.25 in the
+    /// 2019 report's Cornell box. `None` without indirect light.
+    pub fn direct_to_indirect(&self) -> Option<f64> {
+        let total = |v: [f64; 3]| v.iter().sum::<f64>();
+        let indirect = total(self.global) + total(self.caustic);
+        (indirect > 0.0).then(|| total(self.direct) / indirect)
+    }
+}

@@ -1,0 +1,156 @@
+use crate::light::SphereSampling;
+use crate::photon_map::{Bandwidth, Kernel, PhotonMap};
+use crate::transport::{DirectLights, LightChoice, PhotonTargets, WalkSettings};
+
+/// Settings of the photon mapper. No length in it has a default in scene units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotonMapperConfig {
+    /// Photons wanted in the global map.
+    pub photons: u64,
+    /// Photons wanted in the caustic map.
+    pub caustic_photons: u64,
+    /// Paths to emit for each map, whatever they store; overrides the two numbers above.
+    pub emit: Option<u64>,
+    /// At most this multiple of a wanted number is emitted, and the map is thinner then.
+    pub emit_max: u64,
+    /// Photons of an estimate, k: the radius is where the k-th lies, and the k − 1 within count.
+    pub neighbours: u32,
+    /// A fixed radius in scene units instead of k neighbours.
+    pub radius: Option<f32>,
+    /// Largest radius of k neighbours, in scene units; by default twice that which holds k photons
+    /// at the map's mean density.
+    pub max_radius: Option<f32>,
+    /// How photons are weighted by their distance.
+    pub kernel: Kernel,
+    /// Multiplies k so that kernels blur equally wide.
+    pub equal_bandwidth: bool,
+    /// Where direct light comes from.
+    pub direct: DirectSource,
+    /// Which lights are sampled for it.
+    pub direct_lights: DirectLights,
+    /// Whether indirect light is gathered by rays.
+    pub final_gather: FinalGather,
+    /// Segments of a path from light to lens; `None` without end.
+    pub max_depth: Option<u32>,
+    /// Which lights photon paths start from.
+    pub light_choice: LightChoice,
+    /// How lights that shine everywhere are sampled.
+    pub sphere_sampling: SphereSampling,
+    /// What part of the light the picture shows.
+    pub show: Show,
+}
+
+impl Default for PhotonMapperConfig {
+    fn default() -> Self {
+        Self {
+            photons: 200_000,
+            caustic_photons: 200_000,
+            emit: None,
+            emit_max: 100,
+            neighbours: 60,
+            radius: None,
+            max_radius: None,
+            kernel: Kernel::Epanechnikov,
+            equal_bandwidth: false,
+            direct: DirectSource::Rays,
+            direct_lights: DirectLights::One,
+            final_gather: FinalGather::Auto,
+            max_depth: None,
+            light_choice: LightChoice::Power,
+            sphere_sampling: SphereSampling::SolidAngle,
+            show: Show::All,
+        }
+    }
+}
+
+/// Where direct light comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DirectSource {
+    /// Next event estimation: rays to the lights.
+    #[default]
+    Rays,
+    /// Photons, for comparison: they find their way through glass, and blur shadows.
+    Map,
+}
+
+/// Whether indirect light on surfaces comes from rays that read the maps where they land, rather
+/// than from the maps on the spot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FinalGather {
+    /// The maps on the spot.
+    Off,
+    /// So many rays that a pixel has 64, between 1 and 16 a camera sample; off where direct light
+    /// comes from the map or the picture shows one map.
+    #[default]
+    Auto,
+    /// So many rays a camera sample.
+    Rays(u32),
+}
+
+/// What part of the light the picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Show {
+    /// Everything.
+    #[default]
+    All,
+    /// Direct light; with the caustics, where it comes from the map.
+    Direct,
+    /// Global and caustic light.
+    Indirect,
+    /// What the global map holds.
+    Global,
+    /// What the caustic map holds.
+    Caustic,
+}
+
+impl PhotonMapperConfig {
+    pub(crate) fn walk_settings(&self) -> WalkSettings {
+        WalkSettings {
+            // One segment at least lies between the photon and the lens.
+            max_photon_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),
+            light_choice: self.light_choice,
+            sphere_sampling: self.sphere_sampling,
+        }
+    }
+
+    /// Caustics count as direct light where that comes from photons, which are not stopped by glass.
+    pub(crate) fn shows_caustics(&self) -> bool {
+        matches!(self.show, Show::All | Show::Indirect | Show::Caustic)
+            || (self.show == Show::Direct && self.direct == DirectSource::Map)
+    }
+
+    pub(crate) fn targets(&self) -> PhotonTargets {
+        let shows_global = matches!(self.show, Show::All | Show::Indirect | Show::Global)
+            || (self.show == Show::Direct && self.direct == DirectSource::Map);
+        PhotonTargets {
+            global: if shows_global { self.photons } else { 0 },
+            caustic: if self.shows_caustics() { self.caustic_photons } else { 0 },
+            emit: self.emit,
+            emit_max: self.emit_max,
+            store_direct: self.direct == DirectSource::Map,
+        }
+    }
+
+    /// Gather rays of each camera sample; `None` reads the maps on the spot.
+    pub(crate) fn gather_rays(&self, samples_per_pixel: u32) -> Option<u32> {
+        match self.final_gather {
+            FinalGather::Off | FinalGather::Rays(0) => None,
+            FinalGather::Rays(n) => Some(n),
+            FinalGather::Auto => {
+                let single_map = matches!(self.show, Show::Global | Show::Caustic | Show::Direct);
+                let on_the_spot = single_map || self.direct == DirectSource::Map;
+                (!on_the_spot).then(|| (64 / samples_per_pixel.max(1)).clamp(1, 16))
+            }
+        }
+    }
+
+    /// The width of estimates from a map.
+    pub(crate) fn bandwidth(&self, map: &PhotonMap) -> Bandwidth {
+        if let Some(radius) = self.radius {
+            return Bandwidth::Fixed { radius };
+        }
+        let factor = if self.equal_bandwidth { self.kernel.equal_bandwidth_factor() } else { 1.0 };
+        let k = ((self.neighbours as f32 * factor).round() as u32).max(2);
+        Bandwidth::Nearest { k, max_radius: self.max_radius.unwrap_or_else(|| map.default_max_radius(k)) }
+    }
+}

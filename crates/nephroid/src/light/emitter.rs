@@ -1,0 +1,195 @@
+use super::area::AreaEmitter;
+use super::environment::{ConstantSky, EnvironmentMap};
+use super::spot::Spot;
+use crate::color::Rgb;
+use crate::math::{Frame, Ray, Vec2, Vec3, warp};
+use crate::shape::{Mesh, SurfacePoint};
+use crate::texture::Textures;
+
+/// Light arriving at a point, as sampled from an emitter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Incident {
+    /// Unit direction towards the light.
+    pub wi: Vec3,
+    /// Radiance in W/(m²·sr); for a Dirac light irradiance on a surface facing it, in W/m².
+    pub radiance: Rgb,
+    /// Density of `wi` per unit solid angle; 1 for a Dirac light.
+    pub pdf_solid_angle: f32,
+    /// Whether only this direction could have been sampled.
+    pub dirac: bool,
+    /// Where it comes from.
+    pub source: Source,
+}
+
+/// Where sampled light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// Infinitely far away.
+    Infinity,
+    /// A point without a surface.
+    Point(Vec3),
+    /// A point of a surface.
+    Surface(SurfacePoint),
+}
+
+/// The start of a photon path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emission {
+    /// From the light.
+    pub ray: Ray,
+    /// The point of an area light that the path must be moved off.
+    pub surface: Option<SurfacePoint>,
+    /// Emitted power over the density of the sample, in W: its mean is the emitter's power.
+    pub power: Rgb,
+}
+
+/// What emitters look up: meshes in world space and textures.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lookup<'a> {
+    pub meshes: &'a [Mesh],
+    pub textures: &'a Textures,
+}
+
+/// How directions over the whole sphere are sampled (the report's §2.1.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SphereSampling {
+    /// By the inverse of the distribution: two numbers, always accepted.
+    #[default]
+    SolidAngle,
+    /// A point of the cube, rejected until it lies in the ball, and normalised. Slower; the ground
+    /// truth that the other was once checked against.
+    Rejection,
+}
+
+/// A light of the world.
+#[derive(Clone, Debug)]
+pub(crate) struct Emitter {
+    pub name: String,
+    pub kind: EmitterKind,
+    /// W; what photons carry in the mean.
+    pub power: Rgb,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum EmitterKind {
+    Area(AreaEmitter),
+    Point { position: Vec3, intensity: Rgb },
+    Spot(Spot),
+    Directional { direction: Vec3, irradiance: Rgb, target: Target },
+    Constant(ConstantSky),
+    Environment(EnvironmentMap),
+}
+
+/// The sphere at which light from infinitely far away is aimed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Target {
+    pub center: Vec3,
+    pub radius: f32,
+}
+
+impl Target {
+    /// Area of its silhouette, m².
+    pub fn silhouette(&self) -> f32 {
+        std::f32::consts::PI * self.radius * self.radius
+    }
+
+    /// A ray along `direction` from a point of the disk before the sphere, uniformly by area.
+    pub fn ray(&self, direction: Vec3, u: Vec2) -> Ray {
+        let frame = Frame::from_normal(direction);
+        let disk = warp::square_to_disk(u) * self.radius;
+        Ray::new(self.center + frame.to_world(Vec3::new(disk.x, disk.y, -self.radius)), direction)
+    }
+}
+
+impl Emitter {
+    /// Samples light arriving at `p`. `None` if none can.
+    pub fn sample_incident(&self, lookup: Lookup<'_>, p: Vec3, u: Vec2) -> Option<Incident> {
+        match &self.kind {
+            EmitterKind::Area(area) => area.sample_incident(lookup, p, u),
+            EmitterKind::Point { position, intensity } => {
+                let to_light = *position - p;
+                let distance_sq = to_light.length_squared();
+                dirac(to_light.try_normalize()?, *intensity / distance_sq, Source::Point(*position))
+            }
+            EmitterKind::Spot(spot) => {
+                let to_light = spot.position - p;
+                let wi = to_light.try_normalize()?;
+                let intensity = spot.intensity(lookup.textures, -wi);
+                dirac(wi, intensity / to_light.length_squared(), Source::Point(spot.position))
+            }
+            EmitterKind::Directional { direction, irradiance, .. } => {
+                dirac(-*direction, *irradiance, Source::Infinity)
+            }
+            EmitterKind::Constant(sky) => Some(sky.sample_incident(u)),
+            EmitterKind::Environment(map) => map.sample_incident(lookup.textures, u),
+        }
+    }
+
+    /// Density per unit solid angle with which [`Self::sample_incident`] at `p` gives the direction
+    /// to a point of this area light.
+    pub fn pdf_of_surface(&self, p: Vec3, point: &SurfacePoint) -> f32 {
+        match &self.kind {
+            EmitterKind::Area(area) => area.pdf_incident(p, point),
+            _ => 0.0,
+        }
+    }
+
+    /// The same for a direction that meets nothing.
+    pub fn pdf_of_sky(&self, direction: Vec3) -> f32 {
+        match &self.kind {
+            EmitterKind::Constant(_) => warp::SPHERE_PDF,
+            EmitterKind::Environment(map) => map.pdf(direction),
+            _ => 0.0,
+        }
+    }
+
+    /// Radiance that a ray along `direction` which meets nothing sees of this light.
+    pub fn sky_radiance(&self, textures: &Textures, direction: Vec3) -> Rgb {
+        match &self.kind {
+            EmitterKind::Constant(sky) => sky.radiance,
+            EmitterKind::Environment(map) => map.radiance(textures, direction),
+            _ => Rgb::BLACK,
+        }
+    }
+
+    /// Whether rays that meet nothing see it.
+    pub fn is_sky(&self) -> bool {
+        matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))
+    }
+
+    /// Starts a photon path. `sphere` gives directions for lights that shine everywhere.
+    pub fn emit(
+        &self,
+        lookup: Lookup<'_>,
+        u_position: Vec2,
+        u_direction: Vec2,
+        sphere: impl FnOnce(Vec2) -> Vec3,
+    ) -> Emission {
+        match &self.kind {
+            EmitterKind::Area(area) => area.emit(lookup, u_position, u_direction),
+            EmitterKind::Point { position, intensity } => Emission {
+                ray: Ray::new(*position, sphere(u_direction)),
+                surface: None,
+                power: *intensity / warp::SPHERE_PDF,
+            },
+            EmitterKind::Spot(spot) => spot.emit(lookup.textures, u_direction),
+            EmitterKind::Directional { direction, irradiance, target } => Emission {
+                ray: target.ray(*direction, u_position),
+                surface: None,
+                power: *irradiance * target.silhouette(),
+            },
+            EmitterKind::Constant(sky) => sky.emit(u_position, sphere(u_direction)),
+            EmitterKind::Environment(map) => map.emit(lookup.textures, u_position, u_direction),
+        }
+    }
+}
+
+fn dirac(wi: Vec3, irradiance: Rgb, source: Source) -> Option<Incident> {
+    (!irradiance.is_black() && irradiance.is_finite()).then_some(Incident {
+        wi,
+        radiance: irradiance,
+        pdf_solid_angle: 1.0,
+        dirac: true,
+        source,
+    })
+}

@@ -1,0 +1,156 @@
+use super::{Material, Metal};
+use crate::color::Rgb;
+use crate::handle::{Arena, Handle};
+use crate::texture::{Texture, Textures};
+
+/// Every problem of a material, one sentence each; none if [`Material::at`] may be called on it.
+///
+/// The sentences name the parameter, not the material, which only its owner can.
+pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: &Textures) -> Vec<String> {
+    let mut problems = Problems { textures, list: Vec::new() };
+    match &materials[material] {
+        Material::Diffuse { reflectance } => {
+            problems.albedo("reflectance", *reflectance);
+        }
+        Material::Phong { diffuse_reflectance, specular_reflectance, exponent } => {
+            problems.phong(*diffuse_reflectance, *specular_reflectance, *exponent);
+        }
+        Material::Conductor { metal, specular_reflectance } => {
+            problems.metal(metal);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+        }
+        Material::Dielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance }
+        | Material::ThinDielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance } => {
+            problems.indices(*int_ior, *ext_ior);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+            problems.albedo("specular_transmittance", *specular_transmittance);
+        }
+        Material::TwoSided { front, back } => {
+            problems.side("front", materials, material, *front);
+            if front != back {
+                problems.side("back", materials, material, *back);
+            }
+        }
+        Material::Null => {}
+    }
+    problems.list
+}
+
+struct Problems<'a> {
+    textures: &'a Textures,
+    list: Vec<String>,
+}
+
+impl Problems<'_> {
+    fn add(&mut self, problem: impl Into<String>) {
+        self.list.push(problem.into());
+    }
+
+    /// The value of an albedo that is constant and in order.
+    fn albedo(&mut self, name: &str, texture: Handle<Texture>) -> Option<Rgb> {
+        if !self.textures.list.contains(texture) {
+            self.add(format!("{name} refers to a texture that does not exist"));
+            return None;
+        }
+        let Texture::Constant(value) = self.textures.list[texture] else { return None };
+        if !value.is_finite() || value.min_channel() < 0.0 {
+            self.add(format!("{name} is {}, but must be between 0 and 1 in every channel", show(value)));
+            return None;
+        }
+        if value.max_channel() > 1.0 {
+            self.add(format!(
+                "{name} is {}, which would reflect more light than arrives, and photons would never \
+                 end; write at most 1 in every channel, and make a light stronger instead",
+                show(value)
+            ));
+            return None;
+        }
+        Some(value)
+    }
+
+    fn phong(&mut self, diffuse: Handle<Texture>, specular: Handle<Texture>, exponent: f32) {
+        if !(exponent.is_finite() && exponent >= 0.0) {
+            self.add(format!("exponent is {exponent}, but must be a number from 0 (dull) upwards"));
+        }
+        let diffuse = self.albedo("diffuse_reflectance", diffuse);
+        let specular = self.albedo("specular_reflectance", specular);
+        let (Some(diffuse), Some(specular)) = (diffuse, specular) else { return };
+        let sum = diffuse + specular;
+        if sum.max_channel() > 1.0 + f32::EPSILON {
+            self.add(format!(
+                "diffuse_reflectance and specular_reflectance add up to {}, which would reflect more \
+                 light than arrives, and photons would never end; multiply both by {:.3} or less",
+                show(sum),
+                // Rounded down, so that following the advice is enough.
+                (1000.0 / sum.max_channel()).floor() / 1000.0
+            ));
+        }
+    }
+
+    fn metal(&mut self, metal: &Metal) {
+        let Metal::Index { eta, k } = metal else { return };
+        for (name, value) in [("eta", *eta), ("k", *k)] {
+            if !value.is_finite() || value.min_channel() < 0.0 {
+                self.add(format!(
+                    "{name} is {}, but must be finite and not negative in every channel",
+                    show(value)
+                ));
+            }
+        }
+    }
+
+    fn indices(&mut self, int_ior: f32, ext_ior: f32) {
+        let found = self.list.len();
+        for (name, ior) in [("int_ior", int_ior), ("ext_ior", ext_ior)] {
+            if !(ior.is_finite() && ior > 0.0) {
+                self.add(format!(
+                    "{name} is {ior}, but an index of refraction is positive and finite (air has 1, water \
+                     1.33, glass 1.5)"
+                ));
+            }
+        }
+        let ratio_sq = (int_ior / ext_ior) * (int_ior / ext_ior);
+        if self.list.len() == found && !(ratio_sq.is_normal() && (1.0 / ratio_sq).is_normal()) {
+            self.add(format!("int_ior {int_ior} and ext_ior {ext_ior} are too far apart to reckon with"));
+        }
+    }
+
+    fn side(
+        &mut self,
+        name: &str,
+        materials: &Arena<Material>,
+        owner: Handle<Material>,
+        side: Handle<Material>,
+    ) {
+        if !materials.contains(side) {
+            self.add(format!("{name} refers to a material that does not exist"));
+        } else if side.index() >= owner.index() {
+            self.add(format!(
+                "{name} refers to the material itself or a later one; store what it refers to first"
+            ));
+        } else if let Some(kind) = two_sided_already(&materials[side]) {
+            self.add(format!(
+                "{name} is {kind}, which has two sides already; use it without the two-sided material"
+            ));
+        }
+    }
+}
+
+/// The name of a material that light passes through.
+fn two_sided_already(material: &Material) -> Option<&'static str> {
+    match material {
+        Material::Dielectric { .. } => Some("a dielectric"),
+        Material::ThinDielectric { .. } => Some("a thin dielectric"),
+        Material::Null => Some("a null material"),
+        Material::Diffuse { .. }
+        | Material::Phong { .. }
+        | Material::Conductor { .. }
+        | Material::TwoSided { .. } => None,
+    }
+}
+
+/// One number for grey, three for colours.
+fn show(value: Rgb) -> String {
+    let Rgb { r, g, b } = value;
+    if r == g && g == b { r.to_string() } else { format!("({r}, {g}, {b})") }
+}

@@ -1,0 +1,175 @@
+use crate::math::{Bounds, Vec3};
+
+/// Finds the photons near a point. Knows positions only.
+///
+/// An index arranges the photons in an order of its own; all its methods speak of a photon by its
+/// place in that order. Positions must be finite. Squared distances are `(dx² + dy²) + dz²` in
+/// single precision, so that all indices agree on them to the bit.
+pub trait PhotonIndex: Sized + Sync {
+    /// Arranges `len` points; returns the index and, for each place, the number of the point there.
+    ///
+    /// Panics with 2³² points or more.
+    fn build(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>);
+
+    /// How many points.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The point at a place below [`Self::len`].
+    fn position(&self, place: u32) -> Vec3;
+
+    /// The smallest box around the points.
+    fn bounds(&self) -> Bounds;
+
+    /// Bytes of heap memory.
+    fn memory_bytes(&self) -> usize;
+
+    /// Calls `visit(place, dist_sq)` for each point with `dist_sq <= radius_sq`, by increasing place.
+    fn for_each_within(&self, center: Vec3, radius_sq: f32, visit: impl FnMut(u32, f32));
+
+    /// Finds the `k` nearest points within `max_radius_sq` and leaves them in `found`, sorted by
+    /// distance and, among equals, by place.
+    ///
+    /// `measure(place, dist_sq)` refuses a point with `None`, as if it were not there, or gives the
+    /// squared distance to rank it by, which must not be less than `dist_sq` (just that for the
+    /// ordinary search).
+    fn nearest(
+        &self,
+        center: Vec3,
+        max_radius_sq: f32,
+        k: usize,
+        measure: impl FnMut(u32, f32) -> Option<f32>,
+        found: &mut NearestHeap,
+    );
+}
+
+/// A point found by a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor {
+    /// Its place in the index.
+    pub place: u32,
+    /// Its squared distance, as ranked.
+    pub dist_sq: f32,
+}
+
+/// The nearest points found so far: a list up to k of them, from then on a heap with the farthest on
+/// top, which the next nearer one replaces (Jensen 2001, *Realistic Image Synthesis Using Photon
+/// Mapping*). Make one per thread and use it for all searches: it keeps its memory.
+#[derive(Clone, Debug, Default)]
+pub struct NearestHeap {
+    /// Distance in the upper half, place in the lower: floats that are not negative are ordered like
+    /// their bits, so one comparison of integers ranks by distance, then place.
+    keys: Vec<u64>,
+    k: usize,
+    /// No point farther than this can enter.
+    bound_sq: f32,
+}
+
+impl NearestHeap {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many were found.
+    pub fn len(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Whether none was found.
+    pub fn is_empty(&self) -> bool {
+        self.keys.is_empty()
+    }
+
+    /// The `i`-th nearest, from 0.
+    #[inline]
+    pub fn get(&self, i: usize) -> Option<Neighbor> {
+        self.keys.get(i).map(|&key| unpack(key))
+    }
+
+    /// From the nearest to the farthest.
+    #[inline]
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Neighbor> {
+        self.keys.iter().map(|&key| unpack(key))
+    }
+
+    /// Starts a search.
+    pub(super) fn start(&mut self, k: usize, max_radius_sq: f32) {
+        self.keys.clear();
+        self.k = k;
+        self.bound_sq = if k == 0 { -1.0 } else { max_radius_sq };
+    }
+
+    /// No point farther than this can enter any more.
+    #[inline]
+    pub(super) fn bound_sq(&self) -> f32 {
+        self.bound_sq
+    }
+
+    /// Offers a point at most [`Self::bound_sq`] away.
+    #[inline]
+    pub(super) fn offer(&mut self, place: u32, dist_sq: f32) {
+        let key = pack(place, dist_sq);
+        if self.keys.len() < self.k {
+            self.keys.push(key);
+            if self.keys.len() == self.k {
+                self.make_heap();
+                self.bound_sq = unpack(self.keys[0]).dist_sq;
+            }
+        } else if key < self.keys[0] {
+            sift_down(&mut self.keys, 0, key);
+            self.bound_sq = unpack(self.keys[0]).dist_sq;
+        }
+    }
+
+    /// Ends a search.
+    pub(super) fn finish(&mut self) {
+        self.keys.sort_unstable();
+    }
+
+    /// Keeps the `k` nearest of an ended search.
+    pub(super) fn truncate(&mut self, k: usize) {
+        self.keys.truncate(k);
+    }
+
+    fn make_heap(&mut self) {
+        for i in (0..self.keys.len() / 2).rev() {
+            let key = self.keys[i];
+            sift_down(&mut self.keys, i, key);
+        }
+    }
+}
+
+/// Puts `key` into the hole at `hole`, moving larger children up.
+#[inline]
+fn sift_down(keys: &mut [u64], mut hole: usize, key: u64) {
+    loop {
+        let mut child = 2 * hole + 1;
+        if child >= keys.len() {
+            break;
+        }
+        if child + 1 < keys.len() {
+            child += usize::from(keys[child + 1] > keys[child]);
+        }
+        if keys[child] <= key {
+            break;
+        }
+        keys[hole] = keys[child];
+        hole = child;
+    }
+    keys[hole] = key;
+}
+
+#[inline]
+fn pack(place: u32, dist_sq: f32) -> u64 {
+    u64::from(dist_sq.to_bits()) << 32 | u64::from(place)
+}
+
+#[inline]
+fn unpack(key: u64) -> Neighbor {
+    Neighbor { place: key as u32, dist_sq: f32::from_bits((key >> 32) as u32) }
+}

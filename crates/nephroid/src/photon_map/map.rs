@@ -1,0 +1,189 @@
+use std::f32::consts::PI;
+
+use rayon::prelude::*;
+
+use super::index::PhotonIndex;
+use super::kd_tree::KdTree;
+use super::photon::{Photon, Photons};
+use crate::color::Rgb;
+use crate::math::Vec3;
+
+/// The default of the largest radius, in radii that hold the photons wanted at the map's mean
+/// density: a place with a quarter of it still finds them all. Larger ones blur the dark places and
+/// let a search run over the whole map; smaller ones turn k nearest into a fixed radius there.
+const DEFAULT_MAX_RADIUS: f32 = 2.0;
+
+/// Photons on surfaces and an index over them. Never changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotonMap<I = KdTree> {
+    index: I,
+    payloads: Vec<Payload>,
+    emitted: u64,
+}
+
+/// What the index does not hold of a photon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Payload {
+    power: Rgb,
+    wi: Vec3,
+    normal: Vec3,
+    light: u32,
+    depth: u16,
+}
+
+impl<I: PhotonIndex> PhotonMap<I> {
+    /// Arranges photons and divides their power by the number of paths emitted.
+    ///
+    /// Positions must be finite. Panics with 2³² photons or more.
+    pub fn build(photons: Photons) -> Self {
+        let (all, emitted) = (photons.as_slice(), photons.emitted());
+        let (index, order) = I::build(all.len(), |i| all[i].position);
+        let share = (1.0 / emitted.max(1) as f64) as f32;
+        let payload = |number: &u32| {
+            let Photon { power, wi, normal, light, depth, .. } = all[*number as usize];
+            Payload { power: power * share, wi, normal, light, depth }
+        };
+        Self { index, payloads: order.par_iter().map(payload).collect(), emitted }
+    }
+
+    /// Where the photons are.
+    pub fn index(&self) -> &I {
+        &self.index
+    }
+
+    /// How many photons it holds. Nothing is ever divided by this.
+    pub fn len(&self) -> usize {
+        self.payloads.len()
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.payloads.is_empty()
+    }
+
+    /// Paths emitted to make it, including those that stored nothing.
+    pub fn emitted(&self) -> u64 {
+        self.emitted
+    }
+
+    /// The photon at a place of the index, with its share of the light's power.
+    #[inline]
+    pub fn photon(&self, place: u32) -> Photon {
+        let Payload { power, wi, normal, light, depth } = self.payloads[place as usize];
+        Photon { position: self.index.position(place), power, wi, normal, depth, light }
+    }
+
+    /// The normal and depth of the photon at a place.
+    #[inline]
+    pub(super) fn normal_and_depth(&self, place: u32) -> (Vec3, u16) {
+        let payload = &self.payloads[place as usize];
+        (payload.normal, payload.depth)
+    }
+
+    /// Bytes of heap memory.
+    pub fn memory_bytes(&self) -> usize {
+        self.index.memory_bytes() + size_of_val(self.payloads.as_slice())
+    }
+}
+
+impl PhotonMap<KdTree> {
+    /// The radius of a disc with `k` photons at the mean density over [`KdTree::covered_area`]; 0 if
+    /// there are no photons or all lie on a line along an axis.
+    pub fn typical_radius(&self, k: u32) -> f32 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        (k as f32 * self.index.covered_area() / (PI * self.len() as f32)).sqrt()
+    }
+
+    /// A largest radius for searches of the `k` nearest photons that fits maps of any scale: twice
+    /// [`Self::typical_radius`], but not more than the radius of the sphere around all photons, which
+    /// also takes its place if it is 0.
+    pub fn default_max_radius(&self, k: u32) -> f32 {
+        let (_, whole) = self.index.bounds().bounding_sphere();
+        let radius = DEFAULT_MAX_RADIUS * self.typical_radius(k);
+        if radius > 0.0 { radius.min(whole) } else { whole }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photon_map::BruteForce;
+    use crate::photon_map::testing::{Rng, photon_at};
+
+    fn map(photons: Vec<Photon>) -> PhotonMap {
+        PhotonMap::build(Photons::new(1, photons))
+    }
+
+    fn square(n: usize, size: f32, tilted: bool) -> PhotonMap {
+        let mut rng = Rng::new(1);
+        let (s, t) = if tilted {
+            (Vec3::new(1.0, -1.0, 0.0).normalize(), Vec3::new(1.0, 1.0, -2.0).normalize())
+        } else {
+            (Vec3::X, Vec3::Y)
+        };
+        map((0..n).map(|_| photon_at((s * rng.next() + t * rng.next()) * size, Vec3::Z)).collect())
+    }
+
+    #[test]
+    fn power_is_divided_by_the_paths_emitted_and_not_by_the_photons_stored() {
+        let mut photons = Photons::new(6, vec![photon_at(Vec3::X, Vec3::Z); 3]);
+        photons.append(Photons::new(2, vec![photon_at(Vec3::Y, Vec3::Z)]));
+        assert_eq!((photons.emitted(), photons.stored()), (8, 4));
+        let tree: PhotonMap = PhotonMap::build(photons.clone());
+        let oracle: PhotonMap<BruteForce> = PhotonMap::build(photons);
+        let power = |map: &PhotonMap| (0..4).map(|i| map.photon(i).power).sum::<Rgb>();
+        assert_eq!(power(&tree), Rgb::splat(0.5));
+        assert_eq!(oracle.photon(3), Photon { power: Rgb::splat(0.125), ..photon_at(Vec3::Y, Vec3::Z) });
+        assert_eq!(tree.emitted(), 8);
+        let nothing: PhotonMap = PhotonMap::build(Photons::default());
+        assert!(nothing.is_empty() && nothing.default_max_radius(50) == 0.0);
+    }
+
+    #[test]
+    fn photons_keep_their_payload_when_arranged() {
+        let mut rng = Rng::new(2);
+        let photons: Vec<_> = (0..1000u32)
+            .map(|i| Photon {
+                light: i,
+                depth: i as u16,
+                power: Rgb::splat(i as f32),
+                ..photon_at(Vec3::new(rng.next(), rng.next(), rng.next()), Vec3::Y)
+            })
+            .collect();
+        let map = map(photons.clone());
+        let mut seen: Vec<_> = (0..1000).map(|place| map.photon(place)).collect();
+        seen.sort_by_key(|p| p.light);
+        assert_eq!(seen, photons);
+    }
+
+    #[test]
+    fn memory_is_some_sixty_bytes_a_photon() {
+        let per_photon = square(100_000, 1.0, false).memory_bytes() as f32 / 1e5;
+        assert!((56.0..62.0).contains(&per_photon), "{per_photon}");
+    }
+
+    #[test]
+    fn covered_area_follows_the_surface_and_the_scale() {
+        for (tilted, least, most) in [(false, 0.97, 1.03), (true, 0.97, 1.7)] {
+            let area = square(20_000, 1.0, tilted).index().covered_area();
+            assert!((least..most).contains(&area), "{area}");
+            for size in [1.0 / 1024.0, 1048576.0] {
+                assert_eq!(square(20_000, size, tilted).index().covered_area(), area * size * size);
+            }
+        }
+        let map = square(20_000, 1.0, false);
+        assert!((map.typical_radius(50) / (50.0 / (PI * 20_000.0)).sqrt() - 1.0).abs() < 0.03);
+        assert_eq!(map.default_max_radius(50), 2.0 * map.typical_radius(50));
+    }
+
+    #[test]
+    fn the_largest_radius_survives_degenerate_maps() {
+        assert_eq!(map(vec![photon_at(Vec3::ONE, Vec3::Z); 100]).default_max_radius(50), 0.0);
+        let line = map((0..100).map(|i| photon_at(Vec3::X * i as f32, Vec3::Z)).collect());
+        assert_eq!(line.default_max_radius(50), 49.5);
+        let few = square(3, 1.0, false);
+        assert!(few.default_max_radius(50) <= 0.75 && few.default_max_radius(50) > 0.0);
+    }
+}

@@ -1,0 +1,25 @@
+//! Photons on surfaces: their map, the search for the nearest ones, kernels, and the geometry of the
+//! radiance estimate. Knows neither materials nor how photons come about.
+
+mod brute_force;
+mod estimate;
+mod index;
+mod kd_tree;
+mod kernel;
+mod map;
+mod photon;
+
+#[cfg(test)]
+mod estimate_tests;
+#[cfg(test)]
+mod index_tests;
+#[cfg(test)]
+mod testing;
+
+pub use brute_force::BruteForce;
+pub use estimate::{Bandwidth, Gathered, Query, gather};
+pub use index::{NearestHeap, Neighbor, PhotonIndex};
+pub use kd_tree::KdTree;
+pub use kernel::Kernel;
+pub use map::PhotonMap;
+pub use photon::{Photon, Photons};

@@ -1,0 +1,275 @@
+//! What a scene must satisfy to be rendered.
+
+use super::{Scene, SceneError, Subject};
+use crate::camera::Projection;
+use crate::color::Rgb;
+use crate::film::Filter;
+use crate::light::LightKind;
+use crate::material;
+use crate::math::Transform;
+use crate::shape::{Geometry, Mesh};
+use crate::texture::Texture;
+
+/// Longest side of a picture.
+const MAX_SIDE: u32 = 65_536;
+
+/// Every problem that can be told without building the world.
+pub(crate) fn check(scene: &Scene) -> Vec<SceneError> {
+    let mut problems = Problems(Vec::new());
+    check_camera(scene, &mut problems);
+    check_film(scene, &mut problems);
+    check_textures(scene, &mut problems);
+    check_materials(scene, &mut problems);
+    for (i, mesh) in scene.meshes.iter().enumerate() {
+        check_mesh(mesh, |message| problems.add(Subject::Mesh(i), message));
+    }
+    check_shapes(scene, &mut problems);
+    check_lights(scene, &mut problems);
+    problems.0
+}
+
+struct Problems(Vec<SceneError>);
+
+impl Problems {
+    fn add(&mut self, subject: Subject, message: impl Into<String>) {
+        self.0.push(SceneError { subject, message: message.into() });
+    }
+}
+
+fn check_camera(scene: &Scene, problems: &mut Problems) {
+    if !scene.camera.to_world.is_invertible() {
+        problems.add(Subject::Camera, "`to_world` cannot be undone: no axis may be scaled to zero");
+    }
+    if let Projection::Perspective { fov_deg, principal_point_offset, .. } = scene.camera.projection {
+        if !(fov_deg > 0.0 && fov_deg < 180.0) {
+            problems.add(
+                Subject::Camera,
+                format!("a field of view of {fov_deg} degrees: write one between 0 and 180"),
+            );
+        }
+        if !principal_point_offset.is_finite() {
+            problems.add(Subject::Camera, "the principal point's offset must be finite");
+        }
+    }
+}
+
+fn check_film(scene: &Scene, problems: &mut Problems) {
+    let film = scene.film;
+    let sides = [film.width, film.height];
+    if sides.iter().any(|s| !(1..=MAX_SIDE).contains(s)) {
+        let message =
+            format!("{} by {} pixels: each side must be between 1 and {MAX_SIDE}", film.width, film.height);
+        problems.add(Subject::Film, message);
+    }
+    if let Some(crop) = film.crop {
+        let fits = |start: u32, length: u32, whole: u32| {
+            length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
+        };
+        if !fits(crop.x, crop.width, film.width) || !fits(crop.y, crop.height, film.height) {
+            problems.add(Subject::Film, "the crop window is empty or reaches beyond the picture");
+        }
+    }
+    let sound = match film.filter {
+        Filter::Box => true,
+        Filter::Tent { radius } => radius > 0.0 && radius.is_finite(),
+        Filter::Gaussian { std_dev } => std_dev > 0.0 && std_dev.is_finite(),
+        Filter::Mitchell { b, c } => b.is_finite() && c.is_finite(),
+    };
+    if !sound {
+        problems.add(Subject::Film, "the reconstruction filter's size must be positive and finite");
+    }
+}
+
+fn check_textures(scene: &Scene, problems: &mut Problems) {
+    for (i, image) in scene.textures.images.iter().enumerate() {
+        let subject = Subject::Image(i);
+        if image.pixels.is_empty()
+            || image.pixels.len() as u64 != u64::from(image.width) * u64::from(image.height)
+        {
+            problems.add(subject, "the image is empty or its size does not fit its pixels");
+        }
+        let bad = image.pixels.iter().filter(|p| !p.is_finite()).count();
+        if bad > 0 {
+            problems.add(subject, format!("{bad} pixels are infinite or not a number"));
+        }
+    }
+    for (i, texture) in scene.textures.list.iter().enumerate() {
+        let sound = match texture {
+            Texture::Constant(value) => value.is_finite(),
+            Texture::Bitmap(b) => scene.textures.images.contains(b.image) && b.to_uv.is_finite(),
+            Texture::Checkerboard(c) => c.color0.index() < i && c.color1.index() < i && c.to_uv.is_finite(),
+        };
+        if !sound {
+            problems.add(
+                Subject::Texture(i),
+                "its values must be finite, and what it refers to must come before it",
+            );
+        }
+    }
+}
+
+fn check_materials(scene: &Scene, problems: &mut Problems) {
+    for (handle, _) in scene.materials.iter_handles() {
+        for message in material::check(&scene.materials, handle, &scene.textures) {
+            problems.add(Subject::Material(handle.index()), message);
+        }
+    }
+}
+
+fn check_mesh(mesh: &Mesh, mut problem: impl FnMut(&'static str)) {
+    let n = mesh.positions.len();
+    if mesh.triangles.is_empty() {
+        problem("the mesh has no triangle");
+    }
+    if !mesh.positions.iter().all(|p| p.is_finite()) {
+        problem("a vertex position is infinite or not a number");
+    }
+    if mesh.triangles.iter().flatten().any(|&i| i as usize >= n) {
+        problem("a triangle refers to a vertex that does not exist");
+    }
+    for (length, name) in [
+        (mesh.normals.len(), "the mesh must have a normal for each vertex or none"),
+        (mesh.uvs.len(), "the mesh must have a texture coordinate for each vertex or none"),
+    ] {
+        if length != 0 && length != n {
+            problem(name);
+        }
+    }
+    if !mesh.normals.iter().all(|v| v.is_finite()) || !mesh.uvs.iter().all(|v| v.is_finite()) {
+        problem("a vertex normal or texture coordinate is infinite or not a number");
+    }
+}
+
+fn check_shapes(scene: &Scene, problems: &mut Problems) {
+    for (i, shape) in scene.shapes.iter().enumerate() {
+        let subject = Subject::Shape(i);
+        check_transform(&shape.to_world, subject, problems);
+        if !scene.materials.contains(shape.material) {
+            problems.add(subject, "its material does not exist");
+        }
+        let needs_uniform_scale = match shape.geometry {
+            Geometry::Sphere { center, radius } => {
+                positive(radius, "radius", subject, problems);
+                finite(center.is_finite(), "centre", subject, problems);
+                true
+            }
+            Geometry::Cylinder { p0, p1, radius } => {
+                positive(radius, "radius", subject, problems);
+                finite(p0.is_finite() && p1.is_finite(), "axis", subject, problems);
+                if p0 == p1 {
+                    problems.add(subject, "the ends of the cylinder's axis coincide: it has no length");
+                }
+                true
+            }
+            Geometry::Mesh(mesh) => {
+                if !scene.meshes.contains(mesh) {
+                    problems.add(subject, "its mesh does not exist");
+                }
+                false
+            }
+            Geometry::Rectangle | Geometry::Disk | Geometry::Cube | Geometry::Plane => false,
+        };
+        if needs_uniform_scale && shape.to_world.uniform_scale().is_none() {
+            problems.add(
+                subject,
+                "spheres and cylinders can only be scaled by the same factor on each axis: use a mesh for an ellipsoid",
+            );
+        }
+        if let Some(emission) = shape.emission {
+            if shape.geometry == Geometry::Plane {
+                problems.add(subject, "an infinite plane cannot emit: its power has no end; use a rectangle");
+            }
+            check_emission(scene, emission, subject, problems);
+        }
+    }
+}
+
+fn check_emission(
+    scene: &Scene,
+    emission: crate::handle::Handle<Texture>,
+    subject: Subject,
+    problems: &mut Problems,
+) {
+    if !scene.textures.list.contains(emission) {
+        problems.add(subject, "the texture of its emission does not exist");
+    } else if let Texture::Constant(value) = scene.textures.list[emission] {
+        check_light_value(value, "radiance", subject, problems);
+    }
+}
+
+fn check_lights(scene: &Scene, problems: &mut Problems) {
+    for (i, light) in scene.lights.iter().enumerate() {
+        let subject = Subject::Light(i);
+        match &light.kind {
+            LightKind::Point { position, intensity } => {
+                finite(position.is_finite(), "position", subject, problems);
+                check_light_value(*intensity, "intensity", subject, problems);
+            }
+            LightKind::Spot { to_world, intensity, cutoff_deg, beam_width_deg, texture } => {
+                check_transform(to_world, subject, problems);
+                check_light_value(*intensity, "intensity", subject, problems);
+                if !(*cutoff_deg > 0.0 && *cutoff_deg < 90.0) {
+                    problems.add(
+                        subject,
+                        format!("a cutoff angle of {cutoff_deg}: write one between 0 and 90 degrees"),
+                    );
+                }
+                if !(*beam_width_deg >= 0.0 && beam_width_deg <= cutoff_deg) {
+                    problems.add(subject, "the beam width must lie between 0 and the cutoff angle");
+                }
+                if texture.is_some_and(|t| !scene.textures.list.contains(t)) {
+                    problems.add(subject, "its texture does not exist");
+                }
+            }
+            LightKind::Directional { direction, irradiance } => {
+                if direction.try_normalize().is_none() {
+                    problems.add(subject, "its direction must have a length");
+                }
+                check_light_value(*irradiance, "irradiance", subject, problems);
+            }
+            LightKind::Constant { radiance } => check_light_value(*radiance, "radiance", subject, problems),
+            LightKind::Environment { image, scale, to_world } => {
+                check_transform(to_world, subject, problems);
+                if !scene.textures.images.contains(*image) {
+                    problems.add(subject, "its image does not exist");
+                } else if scene.textures.images[*image].pixels.iter().any(|p| p.min_channel() < 0.0) {
+                    problems.add(subject, "a pixel of its image is negative: light cannot be");
+                }
+                if !(*scale >= 0.0 && scale.is_finite()) {
+                    problems.add(subject, format!("a scale of {scale}: write a number that is not negative"));
+                }
+            }
+        }
+    }
+}
+
+fn check_transform(transform: &Transform, subject: Subject, problems: &mut Problems) {
+    if !transform.is_invertible() {
+        problems.add(
+            subject,
+            "`to_world` is singular or not finite: no axis may be scaled to zero, and every number must be finite",
+        );
+    }
+}
+
+fn check_light_value(value: Rgb, name: &str, subject: Subject, problems: &mut Problems) {
+    if !(value.is_finite() && value.min_channel() >= 0.0) {
+        let [r, g, b] = value.to_array();
+        problems.add(
+            subject,
+            format!("a {name} of ({r}, {g}, {b}): every channel must be finite and not negative"),
+        );
+    }
+}
+
+fn positive(value: f32, name: &str, subject: Subject, problems: &mut Problems) {
+    if !(value > 0.0 && value.is_finite()) {
+        problems.add(subject, format!("a {name} of {value}: write a positive number"));
+    }
+}
+
+fn finite(is_finite: bool, name: &str, subject: Subject, problems: &mut Problems) {
+    if !is_finite {
+        problems.add(subject, format!("its {name} must be finite"));
+    }
+}

@@ -1,0 +1,97 @@
+//! The camera pass: samples of every pixel, tile by tile.
+
+use rayon::prelude::*;
+
+use crate::film::{FilterSampler, PixelSum};
+use crate::math::{Ray, Vec2};
+use crate::observer::{Observer, Phase, Work};
+use crate::sampling::{Key, Sampler, Sequence, Stream};
+use crate::world::World;
+
+/// Side of the square of pixels that is one piece of work.
+const TILE: u32 = 16;
+
+/// Which samples to take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CameraPass {
+    pub seed: u64,
+    pub iteration: u64,
+    /// Index of the first sample of each pixel, within the iteration.
+    pub first_sample: u32,
+    /// How many samples of each pixel.
+    pub samples: u32,
+}
+
+/// One sample of a pixel, as an integrator meets it.
+#[derive(Clone, Debug)]
+pub(crate) struct PixelSample {
+    pub ray: Ray,
+    /// Names the pixel and the purpose; derive the keys of further sequences from it.
+    pub key: Key,
+    /// Index of the sample within the pixel and the iteration.
+    pub index: u32,
+    pub sampler: Sampler,
+}
+
+/// Takes samples of every pixel of the window with `estimate`, which adds to a total `T` of its own
+/// and returns radiance. The sums are the same however the work is shared out. `None` if cancelled.
+pub(crate) fn camera_pass<T: Default + Send, S>(
+    world: &World,
+    pass: &CameraPass,
+    observer: &dyn Observer,
+    scratch: impl Fn() -> S + Sync,
+    join: impl Fn(&mut T, &T),
+    estimate: impl Fn(PixelSample, &mut S, &mut T) -> crate::color::Rgb + Sync,
+) -> Option<(Vec<PixelSum>, T)> {
+    let window = world.scene().film.window();
+    let filter = FilterSampler::new(world.scene().film.filter);
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    let work = Work::begin(observer, Phase::Camera, pixels * u64::from(pass.samples));
+    let columns = window.width.div_ceil(TILE);
+    let key = Key::new(pass.seed, pass.iteration, Stream::Camera);
+    let tiles: Vec<(Vec<PixelSum>, T)> = (0..columns * window.height.div_ceil(TILE))
+        .into_par_iter()
+        .map_init(&scratch, |scratch, tile| {
+            let (x0, y0) = (tile % columns * TILE, tile / columns * TILE);
+            let (x1, y1) = ((x0 + TILE).min(window.width), (y0 + TILE).min(window.height));
+            let mut total = T::default();
+            let mut sums = Vec::with_capacity(((x1 - x0) * (y1 - y0)) as usize);
+            if work.cancelled() {
+                return (sums, total);
+            }
+            for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                let (x, y) = (x + window.x, y + window.y);
+                let key = key.with(u64::from(y) << 32 | u64::from(x));
+                let mut sum = PixelSum::default();
+                for index in pass.first_sample..pass.first_sample + pass.samples {
+                    let mut sampler = Sampler::new(Sequence::Sobol, key, u64::from(index));
+                    let offset = filter.sample(sampler.next_2d());
+                    // The lens's two numbers, so that later sets of four stay aligned.
+                    sampler.next_2d();
+                    let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
+                    let ray = world.camera().ray(position);
+                    let sample = PixelSample { ray, key, index, sampler };
+                    sum.add(estimate(sample, scratch, &mut total), offset.weight);
+                }
+                sums.push(sum);
+            }
+            work.advance(sums.len() as u64 * u64::from(pass.samples));
+            (sums, total)
+        })
+        .collect();
+    if work.cancelled() {
+        return None;
+    }
+    let mut film = vec![PixelSum::default(); pixels as usize];
+    let mut total = T::default();
+    for (tile, (sums, part)) in (0..).zip(tiles) {
+        join(&mut total, &part);
+        let (x0, y0) = (tile % columns * TILE, tile / columns * TILE);
+        let width = (x0 + TILE).min(window.width) - x0;
+        for (row, sums) in (y0..).zip(sums.chunks(width as usize)) {
+            let start = row as usize * window.width as usize + x0 as usize;
+            film[start..start + sums.len()].copy_from_slice(sums);
+        }
+    }
+    Some((film, total))
+}

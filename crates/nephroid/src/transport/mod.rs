@@ -1,0 +1,17 @@
+//! The walks of light: photons from the lights, paths from the camera, and direct light.
+
+mod camera_pass;
+mod direct;
+mod ledger;
+mod photon_pass;
+mod roulette;
+mod walk;
+
+pub(crate) use camera_pass::{CameraPass, PixelSample, camera_pass};
+pub use direct::DirectLights;
+pub(crate) use direct::{Partner, direct_light, light_pdf, sample_lights, sky_by_bsdf};
+pub use ledger::{Balance, Ledger};
+pub use photon_pass::{MapPlan, PhotonPlan, PhotonTargets};
+pub(crate) use photon_pass::{PhotonPass, photon_pass};
+pub(crate) use roulette::survival;
+pub use walk::{LightChoice, PhotonKind, WalkSettings};

@@ -1,0 +1,222 @@
+//! The photon pass: how many paths to emit, and emitting them.
+
+use rayon::prelude::*;
+
+use super::ledger::Ledger;
+use super::walk::{LightChoice, Next, PhotonKind, WalkSettings, walk};
+use crate::observer::{Observer, Phase, Work};
+use crate::photon_map::{Photon, Photons};
+use crate::sampling::{Key, Sampler, Sequence, Stream};
+use crate::world::World;
+
+/// Paths that are traced as one piece of work. Their photons are joined in the order of the paths.
+const CHUNK: u64 = 4096;
+
+/// The pilot goes on until it has counted so many photons for each map, which tells their number per
+/// path to 3 %…
+const PILOT_PHOTONS: u64 = 1024;
+/// … or has traced so many paths.
+const PILOT_PATHS: u64 = 1 << 18;
+
+/// How many photons are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonTargets {
+    /// Photons in the global map.
+    pub global: u64,
+    /// Photons in the caustic map.
+    pub caustic: u64,
+    /// Paths to emit for each map, whatever they store; overrides the targets.
+    pub emit: Option<u64>,
+    /// Paths emitted are at most this multiple of the target.
+    pub emit_max: u64,
+    /// Whether light that comes straight from a light belongs in the global map.
+    pub store_direct: bool,
+}
+
+/// How many paths a render emits for each map in each iteration: fixed before the first is traced,
+/// so that dividing by them is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotonPlan {
+    /// For the global map.
+    pub global: MapPlan,
+    /// For the caustic map.
+    pub caustic: MapPlan,
+}
+
+/// The paths for one map.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapPlan {
+    /// Paths to emit.
+    pub paths: u64,
+    /// Photons the pilot expects them to store.
+    pub expected_photons: u64,
+    /// Whether the limit on emission made the map thinner than asked for.
+    pub limited: bool,
+}
+
+/// The photons of one iteration.
+#[derive(Clone, Debug)]
+pub(crate) struct PhotonPass {
+    pub global: Photons,
+    pub caustic: Photons,
+    /// The books of the paths for the global map, as sums over them.
+    pub ledger: Ledger,
+}
+
+impl PhotonPlan {
+    /// Traces trial paths, with a stream of their own, and plans for the targets.
+    pub(crate) fn by_pilot(
+        world: &World,
+        settings: &WalkSettings,
+        targets: &PhotonTargets,
+        seed: u64,
+    ) -> Self {
+        let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
+        let nothing_stored = too_short && !targets.store_direct;
+        if world.lights_by_power().is_none() || nothing_stored {
+            return Self::default();
+        }
+        let caustics = !too_short && world.has_dirac_surfaces();
+        if let Some(paths) = targets.emit {
+            let plan = |wanted| MapPlan { paths: if wanted { paths } else { 0 }, ..MapPlan::default() };
+            return Self { global: plan(targets.global > 0), caustic: plan(caustics && targets.caustic > 0) };
+        }
+        let (paths, global, caustic) = count(world, settings, targets, caustics, seed);
+        let plan = |target: u64, counted: u64| {
+            let most = target.saturating_mul(targets.emit_max);
+            let per_path = counted as f64 / paths as f64;
+            let needed = if counted > 0 { (target as f64 / per_path).ceil() as u64 } else { u64::MAX };
+            let emitted = round_up(needed.min(most), world, settings);
+            MapPlan {
+                paths: emitted,
+                expected_photons: (emitted as f64 * per_path) as u64,
+                limited: needed > most,
+            }
+        };
+        Self {
+            global: plan(targets.global, global),
+            caustic: if caustics { plan(targets.caustic, caustic) } else { MapPlan::default() },
+        }
+    }
+}
+
+/// Gives every light the same number of paths where that was asked for.
+fn round_up(paths: u64, world: &World, settings: &WalkSettings) -> u64 {
+    match settings.light_choice {
+        LightChoice::Power => paths,
+        LightChoice::Equal => paths.next_multiple_of(world.light_count().max(1) as u64),
+    }
+}
+
+/// Trial paths: how many were traced, and how many photons for each map they would have stored.
+fn count(
+    world: &World,
+    settings: &WalkSettings,
+    targets: &PhotonTargets,
+    caustics: bool,
+    seed: u64,
+) -> (u64, u64, u64) {
+    let key = Key::new(seed, 0, Stream::Pilot);
+    let (mut paths, mut global, mut caustic) = (0, 0, 0);
+    let mut batch = 2 * CHUNK;
+    loop {
+        let counts: Vec<(u64, u64)> = (paths / CHUNK..(paths + batch) / CHUNK)
+            .into_par_iter()
+            .map(|chunk| {
+                let mut books = Ledger::new(world.light_count());
+                let mut stored = (0, 0);
+                for path in chunk * CHUNK..(chunk + 1) * CHUNK {
+                    let mut sampler = Sampler::new(Sequence::Independent, key, path);
+                    walk(world, settings, path, &mut sampler, &mut books.lights, |_, kind| {
+                        match kind {
+                            PhotonKind::Caustic => stored.1 += 1,
+                            PhotonKind::Global => stored.0 += 1,
+                            PhotonKind::Direct => stored.0 += u64::from(targets.store_direct),
+                        }
+                        Next::Continue
+                    });
+                }
+                stored
+            })
+            .collect();
+        paths += batch;
+        global += counts.iter().map(|c| c.0).sum::<u64>();
+        caustic += counts.iter().map(|c| c.1).sum::<u64>();
+        let enough = |target: u64, counted: u64| counted >= PILOT_PHOTONS || target == 0;
+        if (enough(targets.global, global) && (!caustics || enough(targets.caustic, caustic)))
+            || paths >= PILOT_PATHS
+        {
+            return (paths, global, caustic);
+        }
+        batch = paths;
+    }
+}
+
+/// Emits the paths of one iteration. `None` if the observer cancelled.
+pub(crate) fn photon_pass(
+    world: &World,
+    settings: &WalkSettings,
+    plan: &PhotonPlan,
+    store_direct: bool,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+) -> Option<PhotonPass> {
+    let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
+    let global_key = Key::new(seed, iteration, Stream::GlobalPhotons);
+    let (global, ledger) = emit(world, settings, plan.global.paths, global_key, &work, |kind| match kind {
+        PhotonKind::Global => (true, Next::Continue),
+        PhotonKind::Direct => (store_direct, Next::Continue),
+        PhotonKind::Caustic => (false, Next::Continue),
+    })?;
+    let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
+    let (caustic, _) = emit(world, settings, plan.caustic.paths, caustic_key, &work, |kind| {
+        // Whatever follows the first bounce that is not specular is the global map's.
+        (kind == PhotonKind::Caustic, Next::Stop)
+    })?;
+    Some(PhotonPass { global, caustic, ledger })
+}
+
+fn emit(
+    world: &World,
+    settings: &WalkSettings,
+    paths: u64,
+    key: Key,
+    work: &Work<'_>,
+    keep: impl Fn(PhotonKind) -> (bool, Next) + Sync,
+) -> Option<(Photons, Ledger)> {
+    let chunks: Vec<(Vec<Photon>, Ledger)> = (0..paths.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
+            let mut stored = Vec::new();
+            let mut ledger = Ledger::new(world.light_count());
+            if work.cancelled() {
+                return (stored, ledger);
+            }
+            ledger.paths = range.end - range.start;
+            for path in range {
+                let mut sampler = Sampler::new(Sequence::Independent, key, path);
+                walk(world, settings, path, &mut sampler, &mut ledger.lights, |photon, kind| {
+                    let (store, next) = keep(kind);
+                    if store {
+                        stored.push(photon);
+                    }
+                    next
+                });
+            }
+            work.advance(ledger.paths);
+            (stored, ledger)
+        })
+        .collect();
+    if work.cancelled() {
+        return None;
+    }
+    let mut photons = Vec::with_capacity(chunks.iter().map(|c| c.0.len()).sum());
+    let mut ledger = Ledger::new(world.light_count());
+    for (mut stored, books) in chunks {
+        photons.append(&mut stored);
+        ledger.append(&books);
+    }
+    Some((Photons::new(paths, photons), ledger))
+}

@@ -1,0 +1,203 @@
+//! The random walk of a photon: from a light, over surfaces, to its end.
+
+use super::ledger::Balance;
+use super::roulette::survival;
+use crate::color::Rgb;
+use crate::light::SphereSampling;
+use crate::material::Transport;
+use crate::math::{Ray, Vec2, Vec3, warp};
+use crate::photon_map::Photon;
+use crate::sampling::Sampler;
+use crate::world::{World, leave};
+
+/// Which light a photon path starts from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightChoice {
+    /// With probability ∝ its power, so that photons carry similar power.
+    #[default]
+    Power,
+    /// The same number of paths from each, the report's comparison.
+    Equal,
+}
+
+/// What governs photon walks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WalkSettings {
+    /// Segments a photon path may have; `None` without end.
+    pub max_photon_depth: Option<u32>,
+    /// How paths are shared out among lights.
+    pub light_choice: LightChoice,
+    /// How directions of lights that shine everywhere are sampled.
+    pub sphere_sampling: SphereSampling,
+}
+
+/// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
+/// bounce, D any other; null surfaces count as nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhotonKind {
+    /// L D: belongs to next event estimation, unless direct light comes from the map.
+    Direct,
+    /// L S+ D: the caustic map's.
+    Caustic,
+    /// All the rest: the global map's.
+    Global,
+}
+
+/// How a walk goes on after a photon has been shown to its visitor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    Continue,
+    Stop,
+}
+
+/// The start of path `path`: the light, the ray, and the power in W as if the path were alone.
+fn start(
+    world: &World,
+    settings: &WalkSettings,
+    path: u64,
+    sampler: &mut Sampler,
+) -> Option<(usize, Ray, Rgb)> {
+    let table = world.lights_by_power()?;
+    let (u_direction, u_position, u_light) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
+    let (light, probability) = match settings.light_choice {
+        LightChoice::Power => {
+            let (light, probability, _) = table.sample(u_light);
+            (light, probability)
+        }
+        LightChoice::Equal => {
+            let n = table.len();
+            ((path % n as u64) as usize, 1.0 / n as f32)
+        }
+    };
+    let sphere = |u: Vec2| match settings.sphere_sampling {
+        SphereSampling::SolidAngle => warp::square_to_sphere(u),
+        SphereSampling::Rejection => rejection_sphere(sampler),
+    };
+    let emission = world.emitters()[light].emit(world.lookup(), u_position, u_direction, sphere);
+    let ray = match emission.surface {
+        Some(point) => leave(&point, emission.ray.direction),
+        None => emission.ray,
+    };
+    Some((light, ray, emission.power / probability))
+}
+
+/// A uniform direction by rejection (item 8 of the report, with the normalisation of E3): points of
+/// the cube until one lies in the ball and not so near its centre that its direction is rounding.
+pub(super) fn rejection_sphere(sampler: &mut Sampler) -> Vec3 {
+    loop {
+        let a = sampler.next_2d();
+        let p = 2.0 * Vec3::new(a.x, a.y, sampler.next_1d()) - Vec3::ONE;
+        let length_sq = p.length_squared();
+        if length_sq <= 1.0 && length_sq > 1e-6 {
+            return p / length_sq.sqrt();
+        }
+    }
+}
+
+/// Walks photon path `path`, showing every photon that lands on a surface with a density to
+/// estimate to `visit`, and books where the power goes with the light it came from.
+pub(super) fn walk(
+    world: &World,
+    settings: &WalkSettings,
+    path: u64,
+    sampler: &mut Sampler,
+    books: &mut [Balance],
+    mut visit: impl FnMut(Photon, PhotonKind) -> Next,
+) {
+    let Some((light, mut ray, mut power)) = start(world, settings, path, sampler) else { return };
+    let book = &mut books[light];
+    book.emit(power);
+    if power.is_black() {
+        return;
+    }
+    let mut roulette = [0.0f64; 3];
+    let (mut specular, mut other) = (0u32, 0u32);
+    loop {
+        let Some(hit) = world.intersect(&ray) else {
+            book.escape(power);
+            break;
+        };
+        let wo = -ray.direction;
+        let bsdf = world.bsdf(&hit, wo);
+        if bsdf.is_null() {
+            ray = leave(&hit.point, ray.direction);
+            continue;
+        }
+        let depth = specular + other + 1;
+        if !bsdf.is_dirac() && !bsdf.is_black() {
+            let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
+            let photon = Photon {
+                position: hit.point.position,
+                power,
+                wi: wo,
+                normal,
+                depth: u16::try_from(depth).unwrap_or(u16::MAX),
+                light: light as u32,
+            };
+            let kind = match (specular, other) {
+                (0, 0) => PhotonKind::Direct,
+                (_, 0) => PhotonKind::Caustic,
+                _ => PhotonKind::Global,
+            };
+            if visit(photon, kind) == Next::Stop {
+                book.end(power);
+                break;
+            }
+        }
+        if settings.max_photon_depth.is_some_and(|max| depth >= max) {
+            book.end(power);
+            break;
+        }
+        let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+        let Some(sample) = bsdf.sample(wo, u, u_lobe, Transport::Flux) else {
+            book.absorb(power);
+            break;
+        };
+        let scattered = power * sample.weight;
+        book.absorb(power - scattered);
+        let q = survival(power, scattered, depth - 1);
+        if u_survive >= q {
+            take(&mut roulette, scattered);
+            break;
+        }
+        let survivor = scattered / q;
+        take(&mut roulette, scattered - survivor);
+        power = survivor;
+        if sample.dirac {
+            specular += 1;
+        } else {
+            other += 1;
+        }
+        ray = leave(&hit.point, sample.wi);
+    }
+    book.roulette(roulette);
+}
+
+fn take(roulette: &mut [f64; 3], power: Rgb) {
+    for (r, p) in roulette.iter_mut().zip(power.to_array()) {
+        *r += f64::from(p);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Key, Sequence, Stream};
+
+    #[test]
+    fn rejection_gives_unit_vectors_with_the_moments_of_the_uniform_sphere() {
+        let n = 100_000;
+        let (mut mean, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+        for i in 0..n {
+            let mut s = Sampler::new(Sequence::Independent, Key::new(5, 0, Stream::Pilot), i);
+            let w = rejection_sphere(&mut s);
+            assert!((w.length() - 1.0).abs() < 1e-5);
+            mean += w;
+            squares += w * w;
+        }
+        // Five standard errors: false positives below 4e-6 for the six numbers together.
+        let n = n as f32;
+        assert!((mean / n).abs().max_element() < 5.0 * (1.0 / 3.0 / n).sqrt());
+        assert!((squares / n - Vec3::splat(1.0 / 3.0)).abs().max_element() < 5.0 * (4.0 / 45.0 / n).sqrt());
+    }
+}
