@@ -283,7 +283,10 @@ pub fn closest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
     known
         .into_iter()
         .map(|name| (strsim::osa_distance(&wrong, &name.to_lowercase()), name))
-        .filter(|(distance, name)| *distance <= 1.max(name.len().min(wrong.len()) / 3))
+        .filter(|(distance, name)| {
+            let shorter = name.len().min(wrong.len());
+            *distance < shorter && *distance <= 1.max(shorter / 3)
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
 }

@@ -65,7 +65,7 @@ fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
 
 /// In double precision, so that small triangles are not taken for none.
 fn has_area(p: [Vec3; 3]) -> bool {
-    let [a, b, c] = p.map(|p| p.as_dvec3());
+    let [a, b, c] = p.map(Vec3::as_dvec3);
     (b - a).cross(c - a).length_squared() > 0.0
 }
 

@@ -137,6 +137,8 @@ fn size_of_scalar(kind: &ScalarType) -> u64 {
 }
 
 fn one_line(text: &str) -> String {
+    // What follows is the parser's own state.
+    let text = text.split("Error:").next().unwrap_or_default();
     text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(200).collect()
 }
 

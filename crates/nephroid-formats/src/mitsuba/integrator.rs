@@ -5,8 +5,8 @@ use std::cell::{Cell, RefCell};
 use super::document::Element;
 use super::names::property_is_known;
 use super::parameters::shortened;
-use super::properties::Value;
 use super::reader::Reader;
+use super::value::Value;
 use crate::diagnostic::{Diagnostic, Location};
 
 /// Integrators that only wrap another one, to compute more about the same picture.

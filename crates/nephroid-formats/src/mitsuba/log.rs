@@ -14,6 +14,13 @@ pub(super) struct Log {
 impl Log {
     pub(super) fn push(&self, diagnostic: Diagnostic) {
         let mut list = self.list.borrow_mut();
+        // What is wrong with a value once is not worth saying twice, as it would be of an undefined
+        // parameter that is no number either. Several things can be wrong with an element.
+        let is_value = |l: &Location| !l.text().starts_with('<');
+        let known = |d: &Diagnostic| is_error(d) && d.location == diagnostic.location;
+        if diagnostic.location.as_ref().is_some_and(is_value) && list.iter().any(known) {
+            return;
+        }
         if list.len() < MAX_MESSAGES && !list.contains(&diagnostic) {
             list.push(diagnostic);
         } else if diagnostic.severity == Severity::Error && !list.iter().any(is_error) {

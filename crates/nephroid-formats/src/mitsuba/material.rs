@@ -7,9 +7,10 @@ use nephroid::material::{Material, Metal};
 use super::document::Element;
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
 use super::parameters::shortened;
-use super::properties::{Plugin, Value};
+use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::Role;
+use super::value::Value;
 use crate::diagnostic::Diagnostic;
 
 /// Indices of refraction by name, at 589 nm and room temperature (Hecht, Optics, 4th edition).

@@ -13,6 +13,7 @@ mod log;
 mod material;
 mod names;
 mod number;
+mod open;
 mod parameters;
 mod properties;
 mod reader;
@@ -21,6 +22,7 @@ mod shape;
 mod spectrum;
 mod texture;
 mod transform;
+mod value;
 
 pub use integrator::{IntegratorParameter, IntegratorRequest, ParameterValue};
 
@@ -30,8 +32,8 @@ use nephroid::scene::Scene;
 
 use self::document::{Document, Element};
 use self::log::Log;
-use self::properties::Ids;
 use self::reader::Reader;
+use self::value::Ids;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::vfs::Files;
 
@@ -166,12 +168,12 @@ fn collect_ids<'t>(document: &'t Document, log: &Log) -> Ids<'t> {
 }
 
 fn collect_ids_of<'t>(element: &'t Element, ids: &mut Ids<'t>, log: &Log) {
-    if let Some(id) = element.attribute("id").filter(|_| element.tag != "ref") {
-        if let Some(first) = ids.insert(&id.value, element) {
-            let message = format!("the id \"{}\" is taken", id.value);
-            let other = first.attribute("id").map_or(&first.location, |a| &a.location);
-            log.push(Diagnostic::error(&id.location, message).hint(format!("it is first given at {other}")));
-        }
+    if let Some(id) = element.attribute("id").filter(|_| element.tag != "ref")
+        && let Some(first) = ids.insert(&id.value, element)
+    {
+        let message = format!("the id \"{}\" is taken", id.value);
+        let other = first.attribute("id").map_or(&first.location, |a| &a.location);
+        log.push(Diagnostic::error(&id.location, message).hint(format!("it is first given at {other}")));
     }
     for child in &element.children {
         collect_ids_of(child, ids, log);

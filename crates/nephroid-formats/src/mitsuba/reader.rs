@@ -10,11 +10,13 @@ use nephroid::shape::{Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
 
 use super::Origins;
-use super::document::{Element, find};
+use super::document::Element;
 use super::log::Log;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
+use super::open::find;
 use super::parameters::shortened;
-use super::properties::{Ids, Plugin};
+use super::properties::Plugin;
+use super::value::Ids;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::vfs::Files;
 
@@ -114,10 +116,19 @@ impl<'t> Reader<'t> {
     }
 
     /// Says that a plugin's type is not one of the format.
+    ///
+    /// `known` are lists of those that are, first those that can be rendered.
     pub(super) fn unknown_kind(&self, plugin: &Plugin, known: &[&[&'static str]]) {
-        let message = format!("unknown {} \"{}\"", plugin.element.tag, shortened(plugin.kind));
-        let known = known.iter().flat_map(|list| list.iter().copied());
-        self.log.push(Diagnostic::error(plugin.location(), message).did_you_mean(plugin.kind, known));
+        if plugin.element.attribute("type").is_none() {
+            return;
+        }
+        let text = format!("unknown {} \"{}\"", plugin.element.tag, shortened(plugin.kind));
+        let all = known.iter().flat_map(|list| list.iter().copied());
+        let mut message = Diagnostic::error(plugin.location(), text).did_you_mean(plugin.kind, all);
+        if message.hint.is_none() {
+            message = message.hint(format!("known are {}", known[0].join(", ")));
+        }
+        self.log.push(message);
     }
 
     /// Does `work` one level deeper, unless that is too deep.

@@ -8,10 +8,12 @@ use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Image, Texture, Wrap
 use super::document::Element;
 use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
 use super::parameters::shortened;
-use super::properties::{Plugin, Property, Value};
+use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::{Role, Spectrum};
+use super::value::{Property, Value};
 use crate::diagnostic::Location;
+use crate::image::read_texture;
 
 /// A colour, or a texture that was read.
 enum Paint {
@@ -194,13 +196,21 @@ impl<'t> Reader<'t> {
             return Some(*handle);
         }
         match read_texture(&bytes, raw) {
-            Ok(image) => {
-                let handle = self.textures.images.push(image);
+            Ok(file) => {
+                if file.non_finite > 0 {
+                    let message = format!(
+                        "{}: {} pixels are not finite and become black",
+                        path.display(),
+                        file.non_finite
+                    );
+                    self.log.warn(at, message);
+                }
+                let handle = self.textures.images.push(file.image);
                 self.image_of.insert((path, raw), handle);
                 Some(handle)
             }
-            Err(message) => {
-                self.log.error(at, format!("cannot use \"{}\": {message}", path.display()));
+            Err(problem) => {
+                self.log.error(at, format!("\"{}\" {problem}", path.display()));
                 None
             }
         }
@@ -217,51 +227,4 @@ fn flat_transform(transform: &Transform) -> Affine2 {
     out.matrix2.y_axis = y;
     out.translation = offset;
     out
-}
-
-/// Longest side of an image.
-const MAX_SIDE: u32 = 65_536;
-
-/// An image in linear colour; `raw` leaves 8 and 16 bit values as they are.
-fn read_texture(bytes: &[u8], raw: bool) -> Result<Image, String> {
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        return read_exr(bytes);
-    }
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| error.to_string())?;
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| error.to_string())?;
-    let linear =
-        matches!(decoded, image::DynamicImage::ImageRgb32F(_) | image::DynamicImage::ImageRgba32F(_));
-    let rgb = decoded.into_rgb32f();
-    let decode = |v: f32| if raw || linear { v } else { nephroid::color::srgb::decode(v) };
-    let pixels: Vec<Rgb> = rgb.pixels().map(|p| Rgb::from(p.0).map(decode)).collect();
-    Ok(Image { width: rgb.width(), height: rgb.height(), pixels })
-}
-
-fn read_exr(bytes: &[u8]) -> Result<Image, String> {
-    use exr::prelude::{MetaData, ReadChannels, ReadLayers, read};
-    let meta = MetaData::read_from_buffered(std::io::Cursor::new(bytes), true).map_err(|e| e.to_string())?;
-    if meta.headers.iter().any(|h| h.layer_size.0.max(h.layer_size.1) > MAX_SIDE as usize) {
-        return Err(format!("a side is longer than {MAX_SIDE} pixels"));
-    }
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgb_channels(
-            |size, _| Image::filled(size.width() as u32, size.height() as u32, Rgb::BLACK),
-            |image: &mut Image, at, (r, g, b): (f32, f32, f32)| {
-                let index = at.y() * image.width as usize + at.x();
-                image.pixels[index] = Rgb::new(r, g, b);
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(std::io::Cursor::new(bytes))
-        .map_err(|e| e.to_string())?;
-    Ok(image.layer_data.channel_data.pixels)
 }

@@ -1,0 +1,449 @@
+//! Scenes that can be read, and what becomes of them.
+
+use std::path::Path;
+
+use nephroid::camera::{FovAxis, Projection};
+use nephroid::color::Rgb;
+use nephroid::film::{Crop, FilmSettings, Filter};
+use nephroid::handle::Handle;
+use nephroid::light::LightKind;
+use nephroid::material::{Material, Metal};
+use nephroid::math::{Vec2, Vec3};
+use nephroid::scene::Scene;
+use nephroid::shape::Geometry;
+use nephroid::texture::{BitmapFilter, Texture, Wrap};
+use nephroid_formats::diagnostic::Severity;
+use nephroid_formats::mitsuba::{Options, ParameterValue, SceneFile, read_scene, read_scene_str};
+use nephroid_formats::vfs::MemoryFiles;
+
+fn read_with(content: &str, files: &MemoryFiles, options: &Options) -> SceneFile {
+    let text =
+        format!("<scene version=\"3.0.0\"><sensor type=\"perspective\" id=\"eye\"/>\n{content}\n</scene>");
+    read_scene_str("s.xml", &text, files, options).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn read(content: &str) -> SceneFile {
+    let file = read_with(content, &files(), &Options::default());
+    assert_eq!(file.warnings, [], "{content}");
+    file
+}
+
+/// The colour of a constant texture.
+fn constant(scene: &Scene, texture: Handle<Texture>) -> Rgb {
+    match scene.textures.list[texture] {
+        Texture::Constant(value) => value,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+/// The materials of a scene with one `<bsdf>`, and the warnings about it.
+fn material(bsdf: &str) -> (Scene, Material, Vec<String>) {
+    let file = read_with(bsdf, &files(), &Options::default());
+    let last = file.scene.materials.iter().last().expect("a material").clone();
+    (file.scene, last, file.warnings.iter().map(ToString::to_string).collect())
+}
+
+/// A picture of two pixels, 128 and 255, grey with an alpha channel.
+fn grey_png() -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let picture = image::GrayAlphaImage::from_raw(2, 1, vec![128, 255, 255, 0]).expect("two pixels");
+    picture.write_to(&mut out, image::ImageFormat::Png).expect("memory can be written");
+    out.into_inner()
+}
+
+const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0.25\nf 1/1 2/1 3/1 4/1\n";
+
+fn files() -> MemoryFiles {
+    MemoryFiles::default()
+        .with("quad.obj", QUAD)
+        .with("folder/quad.obj", QUAD)
+        .with("grey.png", grey_png())
+        .with("light.spd", "400 0\n500 8\n600 15.6\n700 18.4\n")
+}
+
+#[test]
+fn an_empty_scene_has_the_defaults_of_the_format() {
+    let file = read("");
+    let gaussian = Filter::Gaussian { std_dev: 0.5 };
+    assert_eq!(file.scene.film, FilmSettings { width: 768, height: 576, crop: None, filter: gaussian });
+    assert_eq!((file.sample_count, file.integrator.name.as_str()), (None, ""));
+    let Projection::Perspective { fov_deg, fov_axis, principal_point_offset } = file.scene.camera.projection
+    else {
+        panic!("not a perspective camera")
+    };
+    // The diagonal of a small-format picture through a 50 mm lens.
+    assert!((fov_deg - 46.793).abs() < 0.001, "{fov_deg}");
+    assert_eq!((fov_axis, principal_point_offset), (FovAxis::Diagonal, Vec2::ZERO));
+}
+
+#[test]
+fn sensor_and_film() {
+    let text = r##"<scene version="2.1.0">
+        <integrator type="moment"><integrator type="aov"><string name="aovs" value="d:depth"/>
+            <integrator type="$how">
+                <integer name="max_depth" value="7"/><float name="radius" value="0.5"/>
+                <boolean name="hide_emitters" value="true"/><string name="kernel" value="cone"/>
+                <integer name="photns" value="5"/>
+            </integrator></integrator></integrator>
+        <default name="how" value="photonmapper"/>
+        <sensor type="perspective">
+            <float name="fov" value="40"/> <string name="fov_axis" value="Smaller"/>
+            <float name="principal_point_offset_x" value="0.1"/>
+            <float name="near_clip" value="1"/> <float name="far_clip" value="9"/>
+            <transform name="to_world"><scale x="-1"/><lookat origin="0,0,4" target="0 0 0" up="0, 1, 0"/></transform>
+            <sampler type="stratified"><integer name="sample_count" value="$spp"/></sampler>
+            <film type="hdrfilm">
+                <integer name="width" value="20"/> <integer name="height" value="10"/>
+                <integer name="crop_offset_x" value="3"/> <integer name="crop_width" value="4"/>
+                <string name="pixel_format" value="rgb"/> <boolean name="sample_border" value="true"/>
+                <rfilter type="mitchell"><float name="B" value="0"/><float name="C" value="0.5"/></rfilter>
+            </film>
+        </sensor>
+    </scene>"##;
+    let options = Options { defines: vec![("spp".into(), "16".into())], lenient: false };
+    let file = read_scene_str("s.xml", text, &files(), &options).unwrap();
+    assert_eq!(file.warnings, []);
+    let offset = Vec2::new(0.1, 0.0);
+    let projection =
+        Projection::Perspective { fov_deg: 40.0, fov_axis: FovAxis::Smaller, principal_point_offset: offset };
+    assert_eq!(file.scene.camera.projection, projection);
+    let to_world = file.scene.camera.to_world;
+    assert_eq!((to_world.point(Vec3::ZERO), to_world.vector(Vec3::Z)), (Vec3::Z * 4.0, -Vec3::Z));
+    // Mirrored before the camera is put in its place.
+    assert_eq!(to_world.vector(Vec3::X), Vec3::X);
+    let crop = Some(Crop { x: 3, y: 0, width: 4, height: 10 });
+    let filter = Filter::Mitchell { b: 0.0, c: 0.5 };
+    assert_eq!(file.scene.film, FilmSettings { width: 20, height: 10, crop, filter });
+    assert_eq!(file.sample_count, Some(16));
+
+    let integrator = file.integrator;
+    assert_eq!(integrator.name, "photonmapper");
+    assert_eq!(integrator.location.as_ref().unwrap().to_string(), "s.xml:3:31");
+    assert_eq!(integrator.parameters[0].value, ParameterValue::Int(7));
+    assert_eq!(integrator.get_int("max_depth").unwrap(), Some(7));
+    assert_eq!(integrator.get_float("radius").unwrap(), Some(0.5));
+    assert_eq!(integrator.get_bool("hide_emitters").unwrap(), Some(true));
+    assert_eq!(integrator.get_int("photons").unwrap(), None);
+    let wrong = integrator.get_float("kernel").unwrap_err().to_string();
+    assert_eq!(wrong, "s.xml:5:90: error: \"kernel\" must be a float");
+    let unused: Vec<_> = integrator.unused().iter().map(ToString::to_string).collect();
+    assert_eq!(
+        unused,
+        [
+            r#"s.xml:6:47: error: the integrator "photonmapper" has no parameter "photns"; did you mean "photons"?"#
+        ]
+    );
+}
+
+#[test]
+fn other_sensors_and_filters() {
+    let text = r#"<scene version="3.0.0"><sensor type="orthographic"><film type="specfilm">
+        <rfilter type="tent"/></film></sensor><sensor type="perspective"/></scene>"#;
+    let file = read_scene_str("s.xml", text, &files(), &Options::default()).unwrap();
+    assert_eq!(file.scene.camera.projection, Projection::Orthographic);
+    assert_eq!(file.scene.film.filter, Filter::Tent { radius: 1.0 });
+    assert!(file.warnings.iter().all(|w| w.severity == Severity::Warning));
+    let warnings: Vec<_> = file.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        warnings,
+        [
+            "s.xml:2:47: warning: only the first <sensor> takes a picture",
+            "s.xml:1:64: warning: film \"specfilm\" cannot be had yet; \"hdrfilm\" stands for it",
+        ]
+    );
+}
+
+#[test]
+fn shapes() {
+    let file = read(
+        r#"<shape type="sphere" id="ball"><point name="center" x="1" y="2" z="3"/><float name="radius" value="4"/></shape>
+        <shape type="rectangle"><boolean name="flip_normals" value="TRUE"/>
+            <transform name="to_world"><scale value="2"/><rotate x="1" angle="-90"/><translate y="-1"/></transform></shape>
+        <shape type="cylinder"><integer name="radius" value="2"/></shape>
+        <shape type="disk"/><shape type="cube"/><shape type="plane"/>
+        <shape type="obj"><string name="filename" value="quad.obj"/></shape>
+        <shape type="obj"><string name="filename" value="quad.obj"/><boolean name="face_normals" value="true"/></shape>
+        <shape type="obj"><string name="filename" value="quad.obj"/></shape>"#,
+    );
+    let shapes = &file.scene.shapes;
+    let geometry: Vec<_> = shapes.iter().map(|s| s.geometry.clone()).collect();
+    let meshes: Vec<_> = file.scene.meshes.iter_handles().collect();
+    assert_eq!(
+        geometry,
+        [
+            Geometry::Sphere { center: Vec3::new(1.0, 2.0, 3.0), radius: 4.0 },
+            Geometry::Rectangle,
+            Geometry::Cylinder { p0: Vec3::ZERO, p1: Vec3::Z, radius: 2.0 },
+            Geometry::Disk,
+            Geometry::Cube,
+            Geometry::Plane,
+            Geometry::Mesh(meshes[0].0),
+            Geometry::Mesh(meshes[1].0),
+            Geometry::Mesh(meshes[0].0),
+        ]
+    );
+    assert_eq!((shapes[0].name.as_str(), shapes[1].name.as_str()), ("ball", "rectangle at line 3"));
+    assert_eq!(shapes.iter().map(|s| s.flip_normals).collect::<Vec<_>>()[..3], [false, true, false]);
+    // Scaled, then turned, then moved: the normal +z ends at +y.
+    assert_eq!(shapes[1].to_world.point(Vec3::Z), Vec3::new(0.0, 1.0, 0.0));
+    assert_eq!(meshes[0].1.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(meshes[0].1.uvs, [Vec2::new(0.0, 0.75); 4]);
+    assert_eq!((meshes[0].1.normals.len(), meshes[1].1.normals.len()), (4, 0));
+    assert_eq!(file.origins.shapes[1].to_string(), "s.xml:3:22");
+    assert_eq!(file.origins.shapes.len(), shapes.len());
+}
+
+#[test]
+fn a_shape_without_a_material_is_grey_or_a_black_lamp() {
+    let file = read(
+        r#"<shape type="sphere"/>
+        <shape type="sphere"><emitter type="area"><rgb name="radiance" value="3"/></emitter></shape>
+        <shape type="sphere"/>"#,
+    );
+    let albedo = |i: usize| match file.scene.materials[file.scene.shapes[i].material] {
+        Material::Diffuse { reflectance } => constant(&file.scene, reflectance),
+        ref other => panic!("{other:?}"),
+    };
+    assert_eq!([albedo(0), albedo(1), albedo(2)], [Rgb::splat(0.5), Rgb::BLACK, Rgb::splat(0.5)]);
+    let emission = file.scene.shapes[1].emission.unwrap();
+    assert_eq!(constant(&file.scene, emission), Rgb::splat(3.0));
+    assert_eq!(file.scene.shapes[0].emission, None);
+    assert_eq!(file.origins.materials.len(), file.scene.materials.len());
+}
+
+#[test]
+fn spellings_of_colours() {
+    let reflectance = |property: &str| {
+        let (scene, material, _) = material(&format!("<bsdf type=\"diffuse\">{property}</bsdf>"));
+        match material {
+            Material::Diffuse { reflectance } => constant(&scene, reflectance),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(reflectance(""), Rgb::splat(0.5));
+    assert_eq!(reflectance(r#"<rgb name="reflectance" value="0.25"/>"#), Rgb::splat(0.25));
+    assert_eq!(reflectance(r#"<rgb name="reflectance" value=".2 , .5	.3"/>"#), Rgb::new(0.2, 0.5, 0.3));
+    assert_eq!(reflectance(r#"<float name="reflectance" value="0.25"/>"#), Rgb::splat(0.25));
+    assert_eq!(reflectance(r#"<spectrum name="reflectance" value="0.25"/>"#), Rgb::splat(0.25));
+    let hex = reflectance(r##"<rgb name="reflectance" value="#ff8000"/>"##);
+    assert!((hex.g - 0.215_86).abs() < 1e-4 && hex.r == 1.0 && hex.b == 0.0, "{hex:?}");
+    let file = read(
+        r#"<emitter type="point"><spectrum name="intensity" filename="light.spd"/></emitter>
+        <emitter type="point"><spectrum name="intensity" value="400:0, 500:8, 600:15.6, 700:18.4"/></emitter>
+        <emitter type="constant"><spectrum name="radiance" type="d65"><float name="scale" value="2"/></spectrum></emitter>"#,
+    );
+    let [LightKind::Point { intensity, .. }, LightKind::Point { intensity: other, .. }, sky] =
+        [0, 1, 2].map(|i| file.scene.lights[i].kind.clone())
+    else {
+        panic!("{:?}", file.scene.lights)
+    };
+    assert_eq!(intensity, other);
+    assert!((intensity.r - 20.71).abs() < 0.01, "{intensity:?}");
+    assert_eq!(sky, LightKind::Constant { radiance: Rgb::splat(2.0) });
+}
+
+#[test]
+fn materials() {
+    let (scene, phong, _) = material(r#"<bsdf type="phong"/>"#);
+    let Material::Phong { diffuse_reflectance, specular_reflectance, exponent } = phong else {
+        panic!("{phong:?}")
+    };
+    assert_eq!(constant(&scene, diffuse_reflectance), Rgb::splat(0.5));
+    assert_eq!((constant(&scene, specular_reflectance), exponent), (Rgb::splat(0.2), 30.0));
+
+    let conductor =
+        |properties: &str| match material(&format!("<bsdf type=\"conductor\">{properties}</bsdf>")) {
+            (_, Material::Conductor { metal, .. }, _) => metal,
+            other => panic!("{other:?}"),
+        };
+    assert_eq!(conductor(""), Metal::PerfectMirror);
+    assert_eq!(conductor(r#"<string name="material" value="none"/>"#), Metal::PerfectMirror);
+    assert_eq!(
+        conductor(r#"<spectrum name="eta" value="0.789"/><rgb name="k" value="6 5 4"/>"#),
+        Metal::Index { eta: Rgb::splat(0.789), k: Rgb::new(6.0, 5.0, 4.0) }
+    );
+    assert!(matches!(
+        conductor(r#"<string name="material" value="Au"/>"#),
+        Metal::Index { eta, .. } if eta.r < eta.b
+    ));
+
+    let iors = |kind: &str, properties: &str| match material(&format!(
+        "<bsdf type=\"{kind}\">{properties}</bsdf>"
+    ))
+    .1
+    {
+        Material::Dielectric { int_ior, ext_ior, .. } => (int_ior, ext_ior),
+        Material::ThinDielectric { int_ior, ext_ior, .. } => (int_ior, ext_ior),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(iors("dielectric", ""), (1.5046, 1.000_277));
+    let water = r#"<string name="int_ior" value="Water"/><integer name="ext_ior" value="1"/>"#;
+    assert_eq!(iors("dielectric", water), (1.333, 1.0));
+    assert_eq!(iors("thindielectric", water), (1.333, 1.0));
+    assert_eq!(material(r#"<bsdf type="null"/>"#).1, Material::Null);
+}
+
+#[test]
+fn two_sided_materials_take_one_or_two() {
+    let (scene, both, _) = material(r#"<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>"#);
+    let first = scene.materials.iter_handles().next().unwrap().0;
+    assert_eq!(both, Material::TwoSided { front: first, back: first });
+    let (scene, both, _) = material(
+        r#"<bsdf type="twosided"><ref id="a"/><bsdf type="conductor"/></bsdf>
+        <bsdf type="diffuse" id="a"/><alias id="a" as="b"/>"#,
+    );
+    let Material::TwoSided { front, back } = both else { panic!("{both:?}") };
+    assert!(matches!(scene.materials[front], Material::Diffuse { .. }));
+    assert!(matches!(scene.materials[back], Material::Conductor { .. }));
+    assert_eq!(scene.materials.len(), 3);
+}
+
+#[test]
+fn materials_not_built_yet_give_way_to_their_nearest_kin() {
+    let (scene, diffuse, warnings) = material(
+        r#"<bsdf type="roughplastic"><float name="alpha" value="0.1"/><rgb name="diffuse_reflectance" value="0.1"/></bsdf>"#,
+    );
+    assert_eq!(
+        warnings,
+        ["s.xml:2:13: warning: bsdf \"roughplastic\" cannot be rendered yet; diffuse stands for it"]
+    );
+    assert!(
+        matches!(diffuse, Material::Diffuse { reflectance } if constant(&scene, reflectance) == Rgb::splat(0.1))
+    );
+    let kin = |bsdf: &str| {
+        let (_, material, warnings) = material(bsdf);
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        material
+    };
+    assert!(matches!(kin(r#"<bsdf type="roughconductor"/>"#), Material::Conductor { .. }));
+    assert!(matches!(kin(r#"<bsdf type="roughdielectric"/>"#), Material::Dielectric { .. }));
+    let mask = r#"<bsdf type="mask"><texture name="opacity" type="checkerboard"/><bsdf type="null"/></bsdf>"#;
+    assert_eq!(kin(mask), Material::Null);
+    let principled = r#"<bsdf type="principled"><rgb name="base_color" value="0.3"/></bsdf>"#;
+    assert!(matches!(kin(principled), Material::Diffuse { .. }));
+}
+
+#[test]
+fn known_but_meaningless_properties_are_only_warned_about() {
+    let (_, _, warnings) = material(r#"<bsdf type="dielectric"><float name="alpha" value="0.1"/></bsdf>"#);
+    assert_eq!(warnings, ["s.xml:2:52: warning: \"alpha\" means nothing in <bsdf type=\"dielectric\">"]);
+}
+
+#[test]
+fn lights() {
+    let file = read(
+        r#"<emitter type="point" id="bulb"><point name="position" value="1, 2, 3"/><rgb name="intensity" value="4"/></emitter>
+        <emitter type="point"><transform name="to_world"><translate x="5"/></transform></emitter>
+        <emitter type="spot"><transform name="to_world"><lookat origin="0 0 0" target="1 0 0" up="0 1 0"/></transform></emitter>
+        <emitter type="directional"><vector name="direction" x="0" y="-2" z="0"/><float name="irradiance" value="3"/></emitter>
+        <emitter type="constant"/>
+        <emitter type="envmap"><string name="filename" value="grey.png"/><float name="scale" value="2"/></emitter>"#,
+    );
+    let lights = &file.scene.lights;
+    let position = Vec3::new(1.0, 2.0, 3.0);
+    assert_eq!(lights[0].kind, LightKind::Point { position, intensity: Rgb::splat(4.0) });
+    assert_eq!((lights[0].name.as_str(), lights[1].name.as_str()), ("bulb", "point at line 3"));
+    assert_eq!(
+        lights[1].kind,
+        LightKind::Point { position: Vec3::new(5.0, 0.0, 0.0), intensity: Rgb::WHITE }
+    );
+    let LightKind::Spot { to_world, cutoff_deg, beam_width_deg, texture, .. } = &lights[2].kind else {
+        panic!("{:?}", lights[2])
+    };
+    assert_eq!((*cutoff_deg, *beam_width_deg, *texture), (20.0, 15.0, None));
+    assert_eq!(to_world.vector(Vec3::Z), Vec3::X);
+    assert_eq!(lights[3].kind, LightKind::Directional { direction: -Vec3::Y, irradiance: Rgb::splat(3.0) });
+    assert_eq!(lights[4].kind, LightKind::Constant { radiance: Rgb::WHITE });
+    assert!(matches!(lights[5].kind, LightKind::Environment { scale: 2.0, .. }));
+    assert_eq!(file.origins.lights[5].line(), 7);
+}
+
+#[test]
+fn textures() {
+    let file = read(
+        r#"<bsdf type="diffuse"><ref name="reflectance" id="wood"/></bsdf>
+        <texture type="bitmap" id="wood"><string name="filename" value="grey.png"/>
+            <string name="filter_type" value="nearest"/><string name="wrap_mode" value="mirror"/>
+            <transform name="to_uv"><matrix value="2 0 0 0.5  0 3 0 0  0 0 16 0  0 0 0 1"/></transform></texture>
+        <texture type="bitmap"><string name="filename" value="grey.png"/><boolean name="raw" value="true"/></texture>
+        <texture type="checkerboard"><rgb name="color1" value="0.9"/>
+            <transform name="to_uv"><scale x="5" y="6"/></transform></texture>"#,
+    );
+    let textures = &file.scene.textures;
+    let bitmaps: Vec<_> = textures
+        .list
+        .iter()
+        .filter_map(|t| if let Texture::Bitmap(bitmap) = t { Some(bitmap) } else { None })
+        .collect();
+    assert_eq!(bitmaps.len(), 2);
+    assert_eq!((bitmaps[0].filter, bitmaps[0].wrap), (BitmapFilter::Nearest, Wrap::Mirror));
+    assert_eq!(bitmaps[0].to_uv.transform_point2(Vec2::ONE), Vec2::new(2.5, 3.0));
+    // The grey channel, decoded or raw; alpha does not matter.
+    let first = |i: usize| textures.images[bitmaps[i].image].pixel(0, 0).g;
+    assert!((first(0) - 0.215_86).abs() < 1e-4 && (first(1) - 128.0 / 255.0).abs() < 1e-6);
+    assert_eq!(textures.images[bitmaps[0].image].pixel(1, 0), Rgb::WHITE);
+    let Some(Texture::Checkerboard(board)) = textures.list.iter().last() else { panic!("no checkerboard") };
+    assert_eq!(textures.mean(board.color0), Rgb::splat(0.4));
+    assert_eq!(textures.mean(board.color1), Rgb::splat(0.9));
+    assert_eq!(board.to_uv.transform_point2(Vec2::ONE), Vec2::new(5.0, 6.0));
+}
+
+#[test]
+fn what_cannot_be_rendered_yet_is_left_out_on_request() {
+    let content = r#"<shape type="serialized"/><emitter type="sunsky"/><medium type="homogeneous" id="fog"/>
+        <shape type="sphere"><bsdf type="null"/><ref name="interior" id="fog"/></shape>"#;
+    let file = read_with(content, &files(), &Options { defines: Vec::new(), lenient: true });
+    assert_eq!((file.scene.shapes.len(), file.scene.lights.len(), file.warnings.len()), (1, 0, 4));
+    assert_eq!(
+        file.warnings[0].to_string(),
+        "s.xml:2:14: warning: shape \"serialized\" cannot be rendered yet and is left out"
+    );
+    let text = r#"<scene version="3.0.0"><sensor type="thinlens"><float name="aperture_radius" value="1"/></sensor></scene>"#;
+    let lenient = Options { defines: Vec::new(), lenient: true };
+    let file = read_scene_str("s.xml", text, &files(), &lenient).unwrap();
+    assert!(matches!(file.scene.camera.projection, Projection::Perspective { .. }));
+    assert_eq!(file.warnings.len(), 1);
+}
+
+#[test]
+fn includes_and_paths_are_relative_to_the_top_scene() {
+    let files = MemoryFiles::default()
+        .with(
+            "a/b/top.xml",
+            r#"<scene version="3.0.0"><path value="../$shared"/><include filename="parts\base.xml"/>
+            <shape type="obj"><string name="filename" value="meshes/quad.obj"/></shape>
+            <default name="shared" value="common"/></scene>"#,
+        )
+        .with(
+            "a/b/parts/base.xml",
+            r#"<scene version="2.0.0"><include filename="parts/film.xml"/>
+            <sensor type="perspective"><ref id="film"/></sensor></scene>"#,
+        )
+        .with(
+            "a/b/parts/film.xml",
+            "\u{feff}<?xml version=\"1.0\"?>\r\n<!-- a film -->\r\n<scene version=\"2.0.0\">\
+             <film type=\"hdrfilm\" id=\"film\"><integer name=\"width\" value=\"$w\"/></film>\
+             <default name=\"w\" value=\"12\"/></scene>",
+        )
+        .with("a/common/meshes/quad.obj", QUAD);
+    let file = read_scene(Path::new("a/b/top.xml"), &files, &Options::default()).unwrap();
+    assert_eq!((file.scene.film.width, file.scene.meshes.len()), (12, 1));
+}
+
+#[test]
+fn the_first_default_counts_wherever_it_stands() {
+    let file = read(
+        r#"<shape type="$kind"><float name="radius" value="$size"/></shape>
+        <default name="kind" value="sphere"/><default name="size" value="3"/><default name="size" value="4"/>"#,
+    );
+    assert_eq!(file.scene.shapes[0].geometry, Geometry::Sphere { center: Vec3::ZERO, radius: 3.0 });
+}
+
+#[test]
+fn flat_triangles_are_left_out_with_a_warning() {
+    let files = MemoryFiles::default().with("m.obj", format!("{QUAD}f 1 1 2\n"));
+    let content = r#"<shape type="obj"><string name="filename" value="m.obj"/></shape>"#;
+    let file = read_with(content, &files, &Options::default());
+    let warnings: Vec<_> = file.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, ["s.xml:2:50: warning: m.obj: left out 1 triangle without area"]);
+}
