@@ -19,7 +19,7 @@ const SPLITS: u32 = 2;
 
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
 /// the mean over many rays smooths what each of them sees.
-const GATHER_PHOTONS: u32 = 16;
+const GATHER_PHOTONS: u32 = 6;
 
 /// Photons that guide the gather rays from a surface.
 const GUIDE_PHOTONS: u32 = 48;
