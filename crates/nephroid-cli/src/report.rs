@@ -85,9 +85,13 @@ impl Report<'_> {
             messages.warning("there is no light in the scene: the picture is black");
         }
         for map in self.maps().iter().filter(|map| map.plan.limited) {
+            let (name, paths) = (map.name, grouped(map.numbers.paths));
+            if map.numbers.photons == 0 {
+                messages.note(&format!("the {name} map is empty: none of {paths} paths leads there"));
+                continue;
+            }
             messages.warning(&format!(
-                "the {} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
-                map.name,
+                "the {name} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
                 grouped(map.photons_per_map() as u64),
                 grouped(map.wanted)
             ));
@@ -114,7 +118,9 @@ impl Report<'_> {
         if let Some(limit) = self.plan.seconds {
             let took = rendered.rendering.as_secs_f64();
             if took > 1.05 * limit {
-                messages.warning(&format!("the first samples of each pixel took {took:.1} s, longer than --time"));
+                messages.warning(&format!(
+                    "the first samples of each pixel took {took:.1} s, longer than --time"
+                ));
             }
         }
         if rendered.film.iterations() == 0 {
@@ -307,6 +313,9 @@ mod tests {
     fn numbers_are_easy_to_read() {
         assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
         assert_eq!([0.0, 12.5, -1e-9].map(power), ["0", "12.500000", "-1.000e-9"]);
-        assert_eq!([plural(1, "pass"), plural(2, "pass"), plural(3, "thread")], ["1 pass", "2 passes", "3 threads"]);
+        assert_eq!(
+            [plural(1, "pass"), plural(2, "pass"), plural(3, "thread")],
+            ["1 pass", "2 passes", "3 threads"]
+        );
     }
 }
