@@ -62,6 +62,19 @@ mod tests {
         assert!((outcome.statistic - 0.7).abs() < 1e-15);
     }
 
+    /// Against exact p-values for few samples (Marsaglia, Tsang and Wang, Journal of Statistical Software 8, 2003).
+    #[test]
+    fn p_values_for_few_samples() {
+        for (n, distance, exact) in [(10, 0.40925, 0.05), (10, 0.48893, 0.01), (20, 0.23156, 0.199839)] {
+            // Evenly spread samples have D = 1/2n; moving the distribution function down by the rest gives D.
+            let samples: Vec<f64> = (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n)).collect();
+            let shift = distance - 0.5 / f64::from(n);
+            let outcome = ks_test(&samples, |x| (x - shift).max(0.0));
+            assert!((outcome.statistic - distance).abs() < 1e-12, "{outcome}");
+            assert!((outcome.p_value - exact).abs() < 0.002, "{outcome} is not {exact}");
+        }
+    }
+
     #[test]
     fn accepts_the_right_distribution_and_rejects_one_three_per_cent_off() {
         let samples = exponential(&mut Pcg32::new(1), 100_000, 1.0);

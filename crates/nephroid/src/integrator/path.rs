@@ -77,7 +77,7 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
         let (u, u_lobe, u_survive) = (s.next_2d(), s.next_1d(), s.next_1d());
         let Some(scattered) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { break };
         let carried = throughput * scattered.weight;
-        let q = survival(throughput, carried, depth - 1);
+        let q = survival(throughput, carried / scattered.radiance_scale, depth - 1);
         if u_survive >= q {
             break;
         }

@@ -27,6 +27,10 @@ pub struct BsdfSample {
     /// f·|cos θ_i| / pdf, with the cosine to the *shading* normal and all that the [`Transport`] asks
     /// for: what the walk multiplies its radiance or power by.
     pub weight: Rgb,
+    /// The factor in `weight` that is no gain or loss of light, but the change of radiance between
+    /// media, (η_o/η_i)²; 1 but for refracted radiance. Roulette must leave it out: it is undone
+    /// where the path comes out of the medium.
+    pub radiance_scale: f32,
     /// The density of `wi` per solid angle; 0 for a Dirac lobe, which has none.
     pub pdf_solid_angle: f32,
     /// Whether the lobe is a Dirac.
@@ -171,7 +175,8 @@ impl Bsdf {
         if pdf_solid_angle > 0.0 {
             let weight = self.eval(wo, wi) * (self.cosine(wi) / pdf_solid_angle);
             let weight = weight * self.carried(wo, wi, transport);
-            Some(BsdfSample { wi, weight, pdf_solid_angle, dirac: false, transmitted: false })
+            let (dirac, transmitted) = (false, false);
+            Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, dirac, transmitted })
         } else {
             None
         }
@@ -257,7 +262,8 @@ impl Bsdf {
             return None;
         }
         let weight = split.reflectance * self.carried(wo, wi, transport);
-        Some(BsdfSample { wi, weight, pdf_solid_angle: 0.0, dirac: true, transmitted: false })
+        let (dirac, transmitted) = (true, false);
+        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle: 0.0, dirac, transmitted })
     }
 
     fn transmission(&self, wo: Vec3, split: &Split, transport: Transport) -> Option<BsdfSample> {
@@ -268,12 +274,13 @@ impl Bsdf {
         if !seen || refraction.transmittance.is_black() {
             return None;
         }
-        let scale = match transport {
+        let radiance_scale = match transport {
             Transport::Radiance => refraction.radiance_scale,
-            Transport::Flux => self.adjoint_factor(wo, wi),
+            Transport::Flux => 1.0,
         };
-        let weight = refraction.transmittance * scale;
-        Some(BsdfSample { wi, weight, pdf_solid_angle: 0.0, dirac: true, transmitted: true })
+        let weight = refraction.transmittance * (radiance_scale * self.carried(wo, wi, transport));
+        let (dirac, transmitted) = (true, true);
+        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: 0.0, dirac, transmitted })
     }
 
     /// A normal of the surface, turned to the side of `wo`.

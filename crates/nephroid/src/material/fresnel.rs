@@ -114,7 +114,9 @@ mod tests {
         for i in 1..100 {
             let (cos_o, eta) = (i as f32 / 100.0, 1.7);
             let cos_i = refracted_cosine(cos_o, eta).unwrap();
-            close(fresnel_dielectric(cos_o, eta), fresnel_dielectric(cos_i, 1.0 / eta));
+            let (into, out) = (fresnel_dielectric(cos_o, eta), fresnel_dielectric(cos_i, 1.0 / eta));
+            // Going back doubles the rounding of a cosine of 0.01.
+            assert!((into - out).abs() < 1e-4, "{cos_o}: {into} and {out}");
         }
     }
 

@@ -22,6 +22,24 @@ pub fn square_to_disk(u: Vec2) -> Vec2 {
     Vec2::new(r * cos, r * sin)
 }
 
+/// Inverse of [`square_to_disk`].
+#[inline]
+pub fn disk_to_square(p: Vec2) -> Vec2 {
+    let r = p.length();
+    if r == 0.0 {
+        return Vec2::splat(0.5);
+    }
+    let v = if p.x.abs() > p.y.abs() {
+        // The quarter that a sign of the radius tells from the opposite one.
+        let signed = r.copysign(p.x);
+        Vec2::new(signed, signed * atan2(p.y / signed, p.x / signed) / FRAC_PI_4)
+    } else {
+        let signed = r.copysign(p.y);
+        Vec2::new(signed * (FRAC_PI_2 - atan2(p.y / signed, p.x / signed)) / FRAC_PI_4, signed)
+    };
+    (v + Vec2::ONE) * 0.5
+}
+
 /// Density of [`square_to_disk`] per unit area.
 #[inline]
 pub fn square_to_disk_pdf(p: Vec2) -> f32 {
@@ -106,5 +124,21 @@ pub fn square_to_triangle(u: Vec2) -> Vec2 {
     } else {
         let y = u.y * 0.5;
         Vec2::new(u.x - y, y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverses_lead_back() {
+        for i in 0..40 {
+            for j in 0..40 {
+                let u = Vec2::new((i as f32 + 0.3) / 40.0, (j as f32 + 0.6) / 40.0);
+                assert!((disk_to_square(square_to_disk(u)) - u).length() < 1e-5, "{u}");
+                assert!((sphere_to_square(square_to_sphere(u)) - u).length() < 1e-5, "{u}");
+            }
+        }
     }
 }

@@ -80,6 +80,8 @@ pub struct Gathered {
 /// the radius and all count, and both rules together have the right expectation still. If the k-th
 /// coincides with the query, its distance says nothing and the largest radius is taken, too.
 ///
+/// Nothing counts within a radius that is not positive and finite.
+///
 /// The order of calls is fixed: by place for a fixed radius, by distance and place otherwise.
 pub fn gather<I: PhotonIndex>(
     map: &PhotonMap<I>,
@@ -90,8 +92,10 @@ pub fn gather<I: PhotonIndex>(
     mut add: impl FnMut(&Photon, f32),
 ) -> Gathered {
     let (k, max_radius) = match bandwidth {
-        Bandwidth::Fixed { radius } => return gather_within(map, query, kernel, radius, add),
-        Bandwidth::Nearest { k, max_radius } => (k.max(2) as usize, max_radius),
+        Bandwidth::Nearest { k, max_radius } if max_radius > 0.0 => (k.max(2) as usize, max_radius),
+        Bandwidth::Nearest { max_radius: radius, .. } | Bandwidth::Fixed { radius } => {
+            return gather_within(map, query, kernel, radius, add);
+        }
     };
     let measure = |place, dist_sq| distance_sq(map, query, place, dist_sq);
     map.index().nearest(query.position, max_radius * max_radius, k, measure, scratch);

@@ -58,7 +58,7 @@ pub struct Neighbor {
 
 /// The nearest points found so far: a list up to k of them, from then on a heap with the farthest on
 /// top, which the next nearer one replaces (Jensen 2001, *Realistic Image Synthesis Using Photon
-/// Mapping*, §5). Make one per thread and use it for all searches: it keeps its memory.
+/// Mapping*). Make one per thread and use it for all searches: it keeps its memory.
 #[derive(Clone, Debug, Default)]
 pub struct NearestHeap {
     /// Distance in the upper half, place in the lower: floats that are not negative are ordered like

@@ -14,9 +14,9 @@ fn clouds() -> Vec<(&'static str, Vec<Vec3>)> {
         ("nothing", vec![]),
         ("one point", random(1)),
         ("two points", random(2)),
-        ("a full leaf", random(16)),
-        ("a leaf and a point", random(17)),
-        ("a node of leaves and a point", random(65)),
+        ("a full leaf", random(32)),
+        ("a leaf and a point", random(33)),
+        ("a node of leaves and a point", random(129)),
         ("a cloud", random(3000)),
         ("a plane", random(2000).into_iter().map(|p| p.with_y(0.5)).collect()),
         ("a line", random(500).into_iter().map(|p| Vec3::splat(p.x)).collect()),
@@ -129,6 +129,13 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn equal_points_keep_the_order_of_their_numbers() {
+    // So the tree does not depend on how the standard library selects, either.
+    let (_, order) = KdTree::build(5000, |_| Vec3::ONE);
+    assert!(order.is_sorted());
+}
+
+#[test]
 fn a_search_visits_a_small_part_of_a_large_set() {
     let mut rng = Rng::new(4);
     let points: Vec<_> = (0..100_000).map(|_| rng.point().with_z(0.0)).collect();
@@ -145,5 +152,5 @@ fn a_search_visits_a_small_part_of_a_large_set() {
         },
         &mut found,
     );
-    assert!(found.len() == 50 && measured < 300, "{measured}");
+    assert!(found.len() == 50 && measured < 400, "{measured}");
 }

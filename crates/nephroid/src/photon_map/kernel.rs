@@ -158,7 +158,7 @@ impl Kernel {
     /// At equal radius a kernel that falls off uses fewer photons and looks noisier; that compares
     /// bandwidths, not kernels. The radius of the least asymptotic mean integrated squared error in
     /// two dimensions has h⁶ ∝ R/μ² with R = ∫K² and μ = ∫x²K (Wand and Jones 1995, *Kernel
-    /// Smoothing*, §4.3): so the factor is ((R/R₀) (μ₀/μ)²)^(1/3), zeros denoting the box. That is 1
+    /// Smoothing*, ch. 4): so the factor is ((R/R₀) (μ₀/μ)²)^(1/3), zeros denoting the box. That is 1
     /// for the box, 1.21 for the Gaussian, 1.44 for Epanechnikov's, 1.61 for the cone of slope 1 and
     /// 1.93 for the biweight.
     pub fn equal_bandwidth_factor(self) -> f32 {
@@ -269,7 +269,7 @@ mod tests {
         for kernel in KERNELS.into_iter().chain([Kernel::ReportGaussian]) {
             let factor = f64::from(kernel.equal_bandwidth_factor());
             let ratio = roughness_over_spread_sq(kernel) / of_box;
-            assert!((factor.powi(3) - ratio).abs() < 1e-4, "{kernel}: {factor}, {}", ratio.powf(1.0 / 3.0));
+            assert!((factor.powi(3) - ratio).abs() < 1e-4, "{kernel}: {factor}³ is not {ratio}");
         }
         for (kernel, published) in [
             (Kernel::Epanechnikov, 1.44),

@@ -6,7 +6,7 @@ use super::index::PhotonIndex;
 use super::kd_tree::KdTree;
 use super::photon::{Photon, Photons};
 use crate::color::Rgb;
-use crate::math::{Bounds, DVec3, Vec3};
+use crate::math::Vec3;
 
 /// The default of the largest radius, in radii that hold the photons wanted at the map's mean
 /// density: a place with a quarter of it still finds them all. Larger ones blur the dark places and
@@ -87,31 +87,13 @@ impl<I: PhotonIndex> PhotonMap<I> {
 }
 
 impl PhotonMap<KdTree> {
-    /// The area the photons cover, estimated from the leaves of the tree.
-    ///
-    /// The points of a leaf lie on a piece of a plane whose projections fill the sides of their tight
-    /// box, or nearly; then the area is the length of the vector of the sides' areas. The box around
-    /// n random points falls short of their cell: by (n − 1)/n in the direction of the last split,
-    /// which passes between neighbouring points, and by (n − 1)/(n + 1) in the other. That is made
-    /// good. Leaves that bridge a gap or an edge count too much, and so do planes at a slant to all
-    /// axes, by up to .6 of their area, since leaves do not fill their boxes there.
-    pub fn covered_area(&self) -> f32 {
-        let area = |(bounds, n): (Bounds, usize)| {
-            let e = bounds.extent().as_dvec3();
-            let sides = e * DVec3::new(e.y, e.z, e.x);
-            let (n, inner) = (n as f64, (n as f64 - 1.0).max(1.0));
-            sides.length() * n * (n + 1.0) / (inner * inner)
-        };
-        self.index.leaf_bounds().map(area).sum::<f64>() as f32
-    }
-
-    /// The radius of a disc with `k` photons at the mean density over [`Self::covered_area`]; 0 if
+    /// The radius of a disc with `k` photons at the mean density over [`KdTree::covered_area`]; 0 if
     /// there are no photons or all lie on a line along an axis.
     pub fn typical_radius(&self, k: u32) -> f32 {
         if self.is_empty() {
             return 0.0;
         }
-        (k as f32 * self.covered_area() / (PI * self.len() as f32)).sqrt()
+        (k as f32 * self.index.covered_area() / (PI * self.len() as f32)).sqrt()
     }
 
     /// A largest radius for searches of the `k` nearest photons that fits maps of any scale: twice
@@ -184,11 +166,11 @@ mod tests {
 
     #[test]
     fn covered_area_follows_the_surface_and_the_scale() {
-        for (tilted, least, most) in [(false, 0.97, 1.03), (true, 0.97, 1.6)] {
-            let area = square(20_000, 1.0, tilted).covered_area();
+        for (tilted, least, most) in [(false, 0.97, 1.03), (true, 0.97, 1.7)] {
+            let area = square(20_000, 1.0, tilted).index().covered_area();
             assert!((least..most).contains(&area), "{area}");
             for size in [1.0 / 1024.0, 1048576.0] {
-                assert_eq!(square(20_000, size, tilted).covered_area(), area * size * size);
+                assert_eq!(square(20_000, size, tilted).index().covered_area(), area * size * size);
             }
         }
         let map = square(20_000, 1.0, false);

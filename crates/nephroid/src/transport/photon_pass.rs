@@ -56,8 +56,10 @@ pub struct MapPlan {
 
 /// The photons of one iteration.
 #[derive(Clone, Debug)]
-pub(crate) struct PhotonPass {
+pub struct PhotonPass {
+    /// Those of the global map.
     pub global: Photons,
+    /// Those of the caustic map.
     pub caustic: Photons,
     /// The books of the paths for the global map, as sums over them.
     pub ledger: Ledger,
@@ -152,8 +154,9 @@ fn count(
     }
 }
 
-/// Emits the paths of one iteration. `None` if the observer cancelled.
-pub(crate) fn photon_pass(
+/// Emits the paths of one iteration: what photon methods build their maps of. `store_direct` is that
+/// of [`PhotonTargets`]. `None` if the observer cancelled.
+pub fn photon_pass(
     world: &World,
     settings: &WalkSettings,
     plan: &PhotonPlan,

@@ -41,6 +41,11 @@ fn one_sided_materials_are_black_from_behind() {
                 let bsdf = zoo.bsdf(case, &place.surface, wo);
                 let behind = wo.dot(place.surface.ng) < 0.0;
                 assert_eq!(bsdf.is_black(), behind && one_sided(case.name), "{} from {wo}", case.name);
+                if !behind && !bsdf.is_black() && one_sided(case.name) {
+                    // Even where a caller mixes up the sides.
+                    assert_eq!(bsdf.dirac_lobes(-wo, Transport::Flux), [None, None], "{}", case.name);
+                    assert!(bsdf.sample(-wo, Vec2::splat(0.5), 0.5, Transport::Flux).is_none());
+                }
                 if bsdf.is_black() {
                     assert!(bsdf.sample(wo, Vec2::splat(0.5), 0.5, Transport::Flux).is_none());
                     assert!(!bsdf.is_dirac() && !bsdf.has_glossy_lobe() && !bsdf.is_null());

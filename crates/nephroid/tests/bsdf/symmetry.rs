@@ -46,15 +46,18 @@ fn seen(w: Vec3) -> f64 {
     1.0 + 0.8 * f64::from(w.dot(Vec3::new(-0.4, 0.5, 0.75)))
 }
 
-/// Light of radiance `from` on a surface scattered once and measured by `to`, walking from the side
-/// of `to`: ∫∫ to(wo) f(wo, wi) from(wi) with the cosines of the surface at `wo` and of the walk at `wi`.
+/// How strongly light comes from, or is measured in, a direction.
+type Response = fn(Vec3) -> f64;
+
+/// The mean over one scattering: `ends[0]` where the walk comes from, spread by the cosine to the
+/// geometry over both sides, times the walk's weight, times `ends[1]` where it goes.
 fn scattered(
     zoo: &Zoo,
     case: &Case,
     place: &Place,
     transport: Transport,
     rng: &mut Rng,
-    ends: (fn(Vec3) -> f64, fn(Vec3) -> f64),
+    ends: [Response; 2],
 ) -> Mean {
     let frame = Frame::from_normal(place.surface.ng);
     let mut mean = Mean::default();
@@ -66,7 +69,7 @@ fn scattered(
         let wo = frame.to_world(local).normalize();
         let bsdf: Bsdf = zoo.bsdf(case, &place.surface, wo);
         let sample = bsdf.sample(wo, rng.square(), rng.next(), transport);
-        mean.add(sample.map_or(0.0, |s| (ends.0)(wo) * f64::from(s.weight.g) * (ends.1)(s.wi)));
+        mean.add(sample.map_or(0.0, |s| ends[0](wo) * f64::from(s.weight.g) * ends[1](s.wi)));
     }
     mean
 }
@@ -80,8 +83,8 @@ fn photons_and_camera_paths_are_adjoint() {
     for case in &zoo.cases {
         for place in places() {
             let mut rng = Rng(1000 + results.len() as u64);
-            let camera = scattered(&zoo, case, &place, Transport::Radiance, &mut rng, (seen, lit));
-            let light = scattered(&zoo, case, &place, Transport::Flux, &mut rng, (lit, seen));
+            let camera = scattered(&zoo, case, &place, Transport::Radiance, &mut rng, [seen, lit]);
+            let light = scattered(&zoo, case, &place, Transport::Flux, &mut rng, [lit, seen]);
             let p_value = z_test(camera.value, light.value, camera.variance() + light.variance(), 1e-5);
             results.push((case.name, place.flat, p_value, camera.value, light.value));
         }

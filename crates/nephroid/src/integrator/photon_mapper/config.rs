@@ -93,7 +93,7 @@ pub enum Show {
     /// Everything.
     #[default]
     All,
-    /// Direct light.
+    /// Direct light; with the caustics, where it comes from the map.
     Direct,
     /// Global and caustic light.
     Indirect,
@@ -113,13 +113,18 @@ impl PhotonMapperConfig {
         }
     }
 
+    /// Caustics count as direct light where that comes from photons, which are not stopped by glass.
+    pub(crate) fn shows_caustics(&self) -> bool {
+        matches!(self.show, Show::All | Show::Indirect | Show::Caustic)
+            || (self.show == Show::Direct && self.direct == DirectSource::Map)
+    }
+
     pub(crate) fn targets(&self) -> PhotonTargets {
         let shows_global = matches!(self.show, Show::All | Show::Indirect | Show::Global)
             || (self.show == Show::Direct && self.direct == DirectSource::Map);
-        let shows_caustics = matches!(self.show, Show::All | Show::Indirect | Show::Caustic);
         PhotonTargets {
             global: if shows_global { self.photons } else { 0 },
-            caustic: if shows_caustics { self.caustic_photons } else { 0 },
+            caustic: if self.shows_caustics() { self.caustic_photons } else { 0 },
             emit: self.emit,
             emit_max: self.emit_max,
             store_direct: self.direct == DirectSource::Map,

@@ -2,11 +2,12 @@
 
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
+use super::guide::Guide;
 use crate::color::Rgb;
 use crate::integrator::Components;
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
-use crate::photon_map::{Bandwidth, NearestHeap, PhotonMap, Query, gather};
+use crate::photon_map::{Bandwidth, Kernel, NearestHeap, PhotonMap, Query, gather};
 use crate::sampling::{Key, Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -20,6 +21,9 @@ const SPLITS: u32 = 2;
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 16;
 
+/// Photons that guide the gather rays from a surface.
+const GUIDE_PHOTONS: u32 = 48;
+
 /// Surfaces that a gather ray may go on from because they are too near to be seen through the map.
 const MAX_NEAR_SURFACES: u32 = 8;
 
@@ -32,12 +36,24 @@ pub(crate) struct PhotonMapper<'a> {
     config: &'a PhotonMapperConfig,
     maps: &'a Maps,
     gather_rays: Option<u32>,
+    /// Every so many-th sample reads the maps, for all.
+    stride: u32,
     /// Widths of the estimates on surfaces that the camera sees.
     global_bandwidth: Bandwidth,
     caustic_bandwidth: Bandwidth,
     /// Radii of the estimates where gather rays land.
     global_radius: f32,
     caustic_radius: f32,
+}
+
+/// Of how many camera samples one reads the maps, and counts for the others, which bring direct light
+/// and emission only: what a map shows hardly changes within a pixel. At least 8 samples of a pixel
+/// read; 4 steps are whole multiples, so that a render may stop after any of them.
+fn reading_stride(samples_per_pixel: u32) -> u32 {
+    [4, 2]
+        .into_iter()
+        .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 8 * s)
+        .unwrap_or(1)
 }
 
 /// A surface that scatters light other than specularly, as a path meets it.
@@ -49,6 +65,13 @@ struct Vertex<'a> {
     depth: u32,
 }
 
+impl Vertex<'_> {
+    /// The geometric normal on the side it is seen from.
+    fn facing_normal(&self) -> Vec3 {
+        if self.wo.dot(self.point.ng) > 0.0 { self.point.ng } else { -self.point.ng }
+    }
+}
+
 impl<'a> PhotonMapper<'a> {
     pub fn new(
         world: &'a World,
@@ -57,11 +80,13 @@ impl<'a> PhotonMapper<'a> {
         samples_per_pixel: u32,
     ) -> Self {
         let narrow = |map: &PhotonMap| config.radius.unwrap_or_else(|| map.typical_radius(GATHER_PHOTONS));
+        let stride = reading_stride(samples_per_pixel);
         Self {
             world,
             config,
             maps,
-            gather_rays: config.gather_rays(samples_per_pixel),
+            gather_rays: config.gather_rays(samples_per_pixel / stride),
+            stride,
             global_bandwidth: config.bandwidth(&maps.global),
             caustic_bandwidth: config.bandwidth(&maps.caustic),
             global_radius: narrow(&maps.global),
@@ -149,7 +174,11 @@ impl<'a> PhotonMapper<'a> {
         if shows_direct && self.config.direct == DirectSource::Rays && self.fits(vertex.depth + 1) {
             out.direct += throughput * self.direct(vertex, &mut sample.sampler);
         }
-        if matches!(show, Show::All | Show::Indirect | Show::Caustic) {
+        if !sample.index.is_multiple_of(self.stride) {
+            return;
+        }
+        let throughput = throughput * self.stride as f32;
+        if self.config.shows_caustics() {
             out.caustic +=
                 throughput * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
         }
@@ -173,7 +202,15 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            out.global += throughput * self.gather(&vertex, rays, key, sample.index, scratch);
+            let guide = gathers.then(|| self.guide(&vertex, scratch));
+            let first = u64::from(sample.index / self.stride) * u64::from(rays);
+            let found: Rgb = (first..first + u64::from(rays))
+                .map(|ray| {
+                    let mut sampler = Sampler::new(Sequence::Sobol, key, ray);
+                    self.gather_ray(&vertex, guide.as_ref(), &mut sampler, scratch)
+                })
+                .sum();
+            out.global += throughput * (found / rays as f32);
         }
     }
 
@@ -196,7 +233,7 @@ impl<'a> PhotonMapper<'a> {
         }
         let query = Query {
             position: point.position,
-            normal: if wo.dot(point.ng) > 0.0 { point.ng } else { -point.ng },
+            normal: vertex.facing_normal(),
             max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
         };
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
@@ -208,33 +245,38 @@ impl<'a> PhotonMapper<'a> {
         (direct, other)
     }
 
-    /// Indirect light by rays: the mean over samples of the BSDF of the radiance they find.
-    fn gather(
-        &self,
-        vertex: &Vertex<'_>,
-        rays: u32,
-        key: Key,
-        sample_index: u32,
-        scratch: &mut Scratch,
-    ) -> Rgb {
-        let mut sum = Rgb::BLACK;
-        for i in 0..rays {
-            let index = u64::from(sample_index) * u64::from(rays) + u64::from(i);
-            let mut sampler = Sampler::new(Sequence::Sobol, key, index);
-            sum += self.gather_ray(vertex, &mut sampler, scratch);
+    /// Where gather rays from a surface should go.
+    fn guide(&self, vertex: &Vertex<'_>, scratch: &mut Scratch) -> Guide {
+        let normal = vertex.facing_normal();
+        let mut guide = Guide::new(normal);
+        let map = &self.maps.global;
+        if !map.is_empty() {
+            let query = Query { position: vertex.point.position, normal, max_photon_depth: None };
+            let bandwidth =
+                Bandwidth::Nearest { k: GUIDE_PHOTONS, max_radius: map.default_max_radius(GUIDE_PHOTONS) };
+            gather(map, &query, Kernel::Box, bandwidth, scratch, |photon, _| {
+                if photon.depth > 1 {
+                    guide.add(photon.wi, photon.power);
+                }
+            });
         }
-        sum / rays as f32
+        guide.finish();
+        guide
     }
 
     /// One gather ray: on over specular surfaces to the first that is not, whose direct, global and
     /// caustic light it brings home. Emission on the way is direct light's and the caustic map's.
     /// Where that surface is nearer than the map can resolve, a ray goes on from it in place of the
     /// look-up; corners stay as bright as they are.
-    fn gather_ray(&self, vertex: &Vertex<'_>, sampler: &mut Sampler, scratch: &mut Scratch) -> Rgb {
+    fn gather_ray(
+        &self,
+        vertex: &Vertex<'_>,
+        guide: Option<&Guide>,
+        sampler: &mut Sampler,
+        scratch: &mut Scratch,
+    ) -> Rgb {
         let mut found = Rgb::BLACK;
-        let Some((mut ray, mut throughput)) =
-            scatter(vertex.bsdf, vertex.point, vertex.wo, Rgb::WHITE, vertex.depth - 1, sampler)
-        else {
+        let Some((mut ray, mut throughput)) = start_gather(vertex, guide, sampler) else {
             return found;
         };
         let mut depth = vertex.depth + 1;
@@ -276,6 +318,25 @@ impl<'a> PhotonMapper<'a> {
     }
 }
 
+/// The first segment of a gather ray, with its f·cos/pdf: by the guide, by the BSDF, or where there is
+/// a glossy lobe by an equal mixture of both.
+fn start_gather(vertex: &Vertex<'_>, guide: Option<&Guide>, sampler: &mut Sampler) -> Option<(Ray, Rgb)> {
+    let Vertex { point, bsdf, wo, .. } = *vertex;
+    let (u, u_lobe, u_technique) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+    let guide_share = match guide {
+        None => 0.0,
+        Some(_) if bsdf.has_glossy_lobe() => 0.5,
+        Some(_) => 1.0,
+    };
+    let wi = match guide {
+        Some(guide) if u_technique < guide_share => guide.sample(u),
+        _ => bsdf.sample(wo, u, u_lobe, Transport::Radiance)?.wi,
+    };
+    let pdf = guide_share * guide.map_or(0.0, |g| g.pdf(wi)) + (1.0 - guide_share) * bsdf.pdf(wo, wi);
+    let weight = bsdf.eval(wo, wi) * (bsdf.cosine(wi) / pdf);
+    (pdf > 0.0 && !weight.is_black()).then(|| (leave(point, wi), weight))
+}
+
 /// Samples the next segment of a camera path, with roulette.
 fn scatter(
     bsdf: &Bsdf,
@@ -286,8 +347,8 @@ fn scatter(
     sampler: &mut Sampler,
 ) -> Option<(Ray, Rgb)> {
     let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-    let BsdfSample { wi, weight, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
+    let BsdfSample { wi, weight, radiance_scale, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
     let carried = throughput * weight;
-    let q = survival(throughput, carried, bounces);
+    let q = survival(throughput, carried / radiance_scale, bounces);
     (u_survive < q).then(|| (leave(point, wi), carried / q))
 }

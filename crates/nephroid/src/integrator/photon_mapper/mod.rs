@@ -3,6 +3,7 @@
 
 mod config;
 mod estimate;
+mod guide;
 
 pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show};
 pub(crate) use estimate::{PhotonMapper, Scratch};

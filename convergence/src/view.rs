@@ -1,0 +1,97 @@
+//! Views that turn pictures into measurements: parallel rays onto a plane, and renders with several
+//! seeds, each of them an independent sample of every pixel.
+
+use nephroid::camera::Projection;
+use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, Show};
+use nephroid::math::{DVec3, Transform, Vec3};
+use nephroid::world::World;
+
+use crate::{Builder, session};
+
+impl Builder {
+    /// A scene seen by parallel rays from `origin` towards `target`, on a film of `width` by `height`
+    /// square pixels; the width spans 2 · `half_width`.
+    ///
+    /// # Panics
+    /// If the origin is the target.
+    pub fn parallel_view(origin: Vec3, target: Vec3, half_width: f64, width: u32, height: u32) -> Self {
+        let mut builder = Self::seen_from(origin, target, 45.0, width);
+        let camera = &mut builder.scene.camera;
+        camera.to_world = Transform::scale(DVec3::splat(half_width)).then(camera.to_world);
+        camera.projection = Projection::Orthographic;
+        builder.scene.film.height = height;
+        builder
+    }
+}
+
+/// Where the middle of each pixel's beam starts, row by row, for a [`Builder::parallel_view`].
+pub fn pixel_origins(world: &World) -> Vec<DVec3> {
+    let film = world.scene().film;
+    let (w, h) = (f64::from(film.width), f64::from(film.height));
+    let to_world = world.scene().camera.to_world;
+    (0..film.height)
+        .flat_map(|y| (0..film.width).map(move |x| (f64::from(x) + 0.5, f64::from(y) + 0.5)))
+        .map(|(x, y)| {
+            let local = DVec3::new(1.0 - 2.0 * x / w, (1.0 - 2.0 * y / h) * h / w, 0.0);
+            to_world.0.transform_point3(local)
+        })
+        .collect()
+}
+
+/// The means of the channels of each pixel, one picture for each seed.
+pub fn renders(
+    world: &World,
+    method: &Method,
+    samples_per_pixel: u32,
+    seeds: std::ops::Range<u64>,
+) -> Vec<Vec<f64>> {
+    let render = |seed| {
+        let picture = session(world, method.clone(), samples_per_pixel, seed).film().develop();
+        picture.pixels.iter().map(|p| p.to_array().iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0).collect()
+    };
+    seeds.map(render).collect()
+}
+
+/// The mean over all pixels, one for each seed.
+pub fn mean_radiances(
+    world: &World,
+    method: &Method,
+    samples_per_pixel: u32,
+    seeds: std::ops::Range<u64>,
+) -> Vec<f64> {
+    let mean = |picture: Vec<f64>| picture.iter().sum::<f64>() / picture.len() as f64;
+    renders(world, method, samples_per_pixel, seeds).into_iter().map(mean).collect()
+}
+
+/// The means of square blocks of pixels of a picture `width` wide, row by row. `side` divides both of
+/// the picture's sides.
+pub fn block_means(picture: &[f64], width: usize, side: usize) -> Vec<f64> {
+    let columns = width / side;
+    let mut sums = vec![0.0; picture.len() / (side * side)];
+    for (i, value) in picture.iter().enumerate() {
+        sums[i / width / side * columns + i % width / side] += value;
+    }
+    sums.iter().map(|sum| sum / (side * side) as f64).collect()
+}
+
+/// The path tracer without limits.
+pub fn path() -> Method {
+    Method::Path(PathConfig::default())
+}
+
+/// The photon mapper with `photons` photons wanted in each map, all else by default.
+pub fn photon_mapper(photons: u64) -> PhotonMapperConfig {
+    PhotonMapperConfig { photons, caustic_photons: photons, ..PhotonMapperConfig::default() }
+}
+
+/// The photon mapper that shows one part of the light as the maps have it on the spot, from `paths`
+/// paths for each map.
+pub fn map_view(show: Show, paths: u64) -> PhotonMapperConfig {
+    PhotonMapperConfig {
+        emit: Some(paths),
+        direct: if show == Show::Direct { DirectSource::Map } else { DirectSource::Rays },
+        final_gather: FinalGather::Off,
+        show,
+        ..PhotonMapperConfig::default()
+    }
+}
