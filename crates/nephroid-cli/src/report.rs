@@ -217,18 +217,8 @@ impl Report<'_> {
         let picture = |sums: [f64; 3]| sums.map(|v| v / s.picture.samples.max(1) as f64);
         let maps: serde_json::Map<_, _> =
             self.maps().iter().map(|map| (map.name.to_owned(), map.json())).collect();
-        let balance = |(light, b): (&str, &Balance)| {
-            json!({
-                "light": light,
-                "emitted": b.emitted,
-                "absorbed": b.absorbed,
-                "escaped": b.escaped,
-                "ended": b.ended,
-                "roulette": b.roulette,
-                "imbalance": b.imbalance(),
-                "roulette_sigmas": b.roulette_z(),
-            })
-        };
+        let seconds: serde_json::Map<_, _> =
+            self.seconds().into_iter().map(|(name, s)| (name.to_owned(), json!(s))).collect();
         let image = r.film.develop();
         let outputs: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
         json!({
@@ -253,9 +243,9 @@ impl Report<'_> {
             "samples_per_pass": self.settings.samples_per_pixel,
             "samples_per_pixel": s.samples_per_pixel,
             "camera_samples": s.picture.samples,
-            "seconds": self.seconds().into_iter().map(|(n, v)| (n.to_owned(), json!(v))).collect::<serde_json::Map<_, _>>(),
+            "seconds": seconds,
             "photons": maps,
-            "ledger": self.balances().map(balance).collect::<Vec<_>>(),
+            "ledger": self.balances().map(balance_json).collect::<Vec<_>>(),
             "image": {
                 "mean": image.mean().to_array(),
                 "mean_luminance": r.film.mean_luminance(),
@@ -273,6 +263,19 @@ impl Report<'_> {
             "messages": warnings,
         })
     }
+}
+
+fn balance_json((light, balance): (&str, &Balance)) -> Value {
+    json!({
+        "light": light,
+        "emitted": balance.emitted,
+        "absorbed": balance.absorbed,
+        "escaped": balance.escaped,
+        "ended": balance.ended,
+        "roulette": balance.roulette,
+        "imbalance": balance.imbalance(),
+        "roulette_sigmas": balance.roulette_z(),
+    })
 }
 
 /// Digits in groups of three.
