@@ -76,7 +76,7 @@ fn camera(scene: &Scene) -> Value {
         Projection::Orthographic => json!({ "projection": "orthographic" }),
         Projection::Perspective { fov_deg, fov_axis, .. } => json!({
             "projection": "perspective",
-            "fov_deg": fov_deg,
+            "fov_deg": short(fov_deg),
             "fov_axis": format!("{fov_axis:?}").to_lowercase(),
         }),
     };
@@ -129,7 +129,8 @@ fn texture(texture: &Texture) -> &'static str {
 }
 
 fn lights(world: &World) -> Value {
-    let power = |power: Rgb| json!({ "power in W": power.to_array(), "mean": power.mean() });
+    let power =
+        |power: Rgb| json!({ "power in W": power.to_array().map(short), "mean": short(power.mean()) });
     world.lights().map(|(name, p)| json!({ "name": name, "power": power(p) })).collect()
 }
 
@@ -155,7 +156,12 @@ fn request(request: &IntegratorRequest) -> Value {
 }
 
 fn vector(v: Vec3) -> Value {
-    json!([v.x, v.y, v.z])
+    json!([v.x, v.y, v.z].map(short))
+}
+
+/// The number of fewest digits that is the same in single precision.
+fn short(v: f32) -> Value {
+    v.to_string().parse::<f64>().map_or(Value::Null, |v| json!(v))
 }
 
 /// How many there are of each kind, in the order in which the kinds are first met.

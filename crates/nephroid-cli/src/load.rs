@@ -1,6 +1,7 @@
 //! From the name of a scene to a world that can be rendered.
 
 use std::ffi::OsString;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use nephroid::scene::{Scene, SceneError, Subject};
@@ -46,15 +47,24 @@ pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
 /// Tells a file that cannot be read, which is no fault of the scene.
 fn check_readable(path: &Path) -> Result<(), Failure> {
     let name = path.display();
-    match std::fs::File::open(path) {
-        Ok(_) => Ok(()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            let bare = path.components().count() == 1 && path.extension().is_none();
-            let builtin = if bare { format!(", and {}", scenes::unknown(&name.to_string())) } else { String::new() };
-            Err(Failure::File(format!("{name}: no such file{builtin}")))
+    // A pipe would have to be opened to be read, and opening one may take for ever.
+    let opened = match std::fs::metadata(path) {
+        Ok(metadata) if !metadata.is_file() => {
+            return Err(Failure::File(format!("{name}: is not a file")));
         }
-        Err(error) => Err(Failure::File(format!("{name}: cannot be read: {error}"))),
-    }
+        Ok(_) => std::fs::File::open(path).map(drop),
+        Err(error) => Err(error),
+    };
+    opened.map_err(|error| {
+        let bare = path.components().count() == 1 && path.extension().is_none();
+        Failure::File(match error.kind() {
+            ErrorKind::NotFound if bare => {
+                format!("{name}: no such file, and {}", scenes::unknown(&name.to_string()))
+            }
+            ErrorKind::NotFound => format!("{name}: no such file"),
+            _ => format!("{name}: cannot be read: {error}"),
+        })
+    })
 }
 
 /// Prepares a scene for rendering; its problems are told at their places in the file.

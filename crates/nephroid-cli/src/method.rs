@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::console::Messages;
 use crate::exit::Failure;
-use crate::parameters::{Draft, PARAMETERS, PhotonFlags};
+use crate::parameters::{Draft, PARAMETERS, Parameter, PhotonFlags};
 
 /// An integrator that can be asked for by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,11 +105,7 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
 fn read_all(request: &IntegratorRequest, draft: &mut Draft) -> Vec<Diagnostic> {
     let mut complaints = Vec::new();
     for parameter in PARAMETERS {
-        let name = parameter.name_in_files();
-        let Some(value) = value(request, &name) else { continue };
-        if let Err(reason) = parameter.set(draft, &value) {
-            complaints.push(bad_value(request, &name, &reason));
-        }
+        read(request, draft, parameter, &mut complaints);
     }
     complaints.extend(request.unused());
     complaints
@@ -119,35 +115,34 @@ fn read_all(request: &IntegratorRequest, draft: &mut Draft) -> Vec<Diagnostic> {
 /// business; but what no integrator knows may be a mistake.
 fn read_depth(request: &IntegratorRequest, draft: &mut Draft) -> Vec<Diagnostic> {
     let mut complaints = Vec::new();
-    let depth = PARAMETERS.iter().find(|p| p.name_in_files() == "max_depth");
-    if let (Some(depth), Some(value)) = (depth, value(request, "max_depth")) {
-        if let Err(reason) = depth.set(draft, &value) {
-            complaints.push(bad_value(request, "max_depth", &reason));
-        }
+    for depth in PARAMETERS.iter().filter(|p| p.name_in_files() == "max_depth") {
+        read(request, draft, depth, &mut complaints);
     }
     let unknown = request.unused().into_iter().filter(|d| d.severity == Severity::Error);
     complaints.extend(unknown.map(|d| Diagnostic { severity: Severity::Warning, ..d }));
     complaints
 }
 
-/// The text of a value, whatever its type, which is then taken as used.
-fn value(request: &IntegratorRequest, name: &str) -> Option<String> {
-    let typed = request.parameters.iter().find(|p| p.name == name).map(|p| p.value.clone());
-    // Asking marks the parameter as used, and as one that could have been given.
-    let _ = request.get_string(name);
-    Some(match typed? {
+/// Reads a parameter, if the scene gives it.
+fn read(
+    request: &IntegratorRequest,
+    draft: &mut Draft,
+    parameter: &Parameter,
+    complaints: &mut Vec<Diagnostic>,
+) {
+    let name = parameter.name_in_files();
+    // Whatever its type, asking marks it as used, and as one that could have been given.
+    let _ = request.get_string(&name);
+    let Some(given) = request.parameters.iter().find(|p| p.name == name) else { return };
+    let value = match &given.value {
         ParameterValue::Int(v) => v.to_string(),
         ParameterValue::Float(v) => v.to_string(),
         ParameterValue::Bool(v) => v.to_string(),
-        ParameterValue::Text(v) => v,
-    })
-}
-
-fn bad_value(request: &IntegratorRequest, name: &str, reason: &str) -> Diagnostic {
-    let message = format!("a bad value for \"{name}\": {reason}");
-    match request.parameters.iter().find(|p| p.name == name) {
-        Some(parameter) => Diagnostic::error(&parameter.location, message),
-        None => Diagnostic::global_error(message),
+        ParameterValue::Text(v) => v.clone(),
+    };
+    if let Err(reason) = parameter.set(draft, &value) {
+        let message = format!("a bad value for \"{name}\": {reason}");
+        complaints.push(Diagnostic::error(&given.location, message));
     }
 }
 

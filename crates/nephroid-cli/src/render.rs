@@ -71,8 +71,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
     let method = method::choose(args.integrator, &file.integrator, &args.photons, &mut messages)?;
     resize(&mut file, args.resolution, &mut messages)?;
     let plan = Plan::new(&args.limits, file.sample_count);
-    let settings =
-        RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
+    let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
     let reading = clock.elapsed();
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
 

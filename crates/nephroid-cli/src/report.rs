@@ -85,9 +85,13 @@ impl Report<'_> {
             messages.warning("there is no light in the scene: the picture is black");
         }
         for map in self.maps().iter().filter(|map| map.plan.limited) {
+            let (name, paths) = (map.name, grouped(map.numbers.paths));
+            if map.numbers.photons == 0 {
+                messages.note(&format!("the {name} map is empty: none of {paths} paths leads there"));
+                continue;
+            }
             messages.warning(&format!(
-                "the {} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
-                map.name,
+                "the {name} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
                 grouped(map.photons_per_map() as u64),
                 grouped(map.wanted)
             ));
@@ -114,7 +118,9 @@ impl Report<'_> {
         if let Some(limit) = self.plan.seconds {
             let took = rendered.rendering.as_secs_f64();
             if took > 1.05 * limit {
-                messages.warning(&format!("the first samples of each pixel took {took:.1} s, longer than --time"));
+                messages.warning(&format!(
+                    "the first samples of each pixel took {took:.1} s, longer than --time"
+                ));
             }
         }
         if rendered.film.iterations() == 0 {
@@ -211,18 +217,8 @@ impl Report<'_> {
         let picture = |sums: [f64; 3]| sums.map(|v| v / s.picture.samples.max(1) as f64);
         let maps: serde_json::Map<_, _> =
             self.maps().iter().map(|map| (map.name.to_owned(), map.json())).collect();
-        let balance = |(light, b): (&str, &Balance)| {
-            json!({
-                "light": light,
-                "emitted": b.emitted,
-                "absorbed": b.absorbed,
-                "escaped": b.escaped,
-                "ended": b.ended,
-                "roulette": b.roulette,
-                "imbalance": b.imbalance(),
-                "roulette_sigmas": b.roulette_z(),
-            })
-        };
+        let seconds: serde_json::Map<_, _> =
+            self.seconds().into_iter().map(|(name, s)| (name.to_owned(), json!(s))).collect();
         let image = r.film.develop();
         let outputs: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
         json!({
@@ -247,9 +243,9 @@ impl Report<'_> {
             "samples_per_pass": self.settings.samples_per_pixel,
             "samples_per_pixel": s.samples_per_pixel,
             "camera_samples": s.picture.samples,
-            "seconds": self.seconds().into_iter().map(|(n, v)| (n.to_owned(), json!(v))).collect::<serde_json::Map<_, _>>(),
+            "seconds": seconds,
             "photons": maps,
-            "ledger": self.balances().map(balance).collect::<Vec<_>>(),
+            "ledger": self.balances().map(balance_json).collect::<Vec<_>>(),
             "image": {
                 "mean": image.mean().to_array(),
                 "mean_luminance": r.film.mean_luminance(),
@@ -267,6 +263,19 @@ impl Report<'_> {
             "messages": warnings,
         })
     }
+}
+
+fn balance_json((light, balance): (&str, &Balance)) -> Value {
+    json!({
+        "light": light,
+        "emitted": balance.emitted,
+        "absorbed": balance.absorbed,
+        "escaped": balance.escaped,
+        "ended": balance.ended,
+        "roulette": balance.roulette,
+        "imbalance": balance.imbalance(),
+        "roulette_sigmas": balance.roulette_z(),
+    })
 }
 
 /// Digits in groups of three.
@@ -307,6 +316,9 @@ mod tests {
     fn numbers_are_easy_to_read() {
         assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
         assert_eq!([0.0, 12.5, -1e-9].map(power), ["0", "12.500000", "-1.000e-9"]);
-        assert_eq!([plural(1, "pass"), plural(2, "pass"), plural(3, "thread")], ["1 pass", "2 passes", "3 threads"]);
+        assert_eq!(
+            [plural(1, "pass"), plural(2, "pass"), plural(3, "thread")],
+            ["1 pass", "2 passes", "3 threads"]
+        );
     }
 }

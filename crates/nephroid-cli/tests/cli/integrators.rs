@@ -1,0 +1,98 @@
+use serde_json::Value;
+
+use crate::support::{Dir, Run};
+
+const OURS: &str = r#"<integrator type="photonmapper"><integer name="photons" value="300"/></integrator>"#;
+
+fn dir_with(integrator: &str) -> Dir {
+    Dir::with_scene(OURS, integrator)
+}
+
+fn integrator(run: &Run) -> Value {
+    run.json()["integrator"].clone()
+}
+
+#[test]
+fn flags_win_over_the_scene_and_the_scene_over_defaults() {
+    let file = r#"<integrator type="photonmapper">
+        <integer name="photons" value="300"/><integer name="neighbours" value="9"/>
+        <string name="kernel" value="cone"/><boolean name="equal_bandwidth" value="true"/>
+        <boolean name="final_gather" value="false"/></integrator>"#;
+    let dir = dir_with(file);
+    let used =
+        integrator(&dir.run(&["render", "a.xml", "--json", "--photons", "77", "--cone-k", "2"]).ends_with(0));
+    assert_eq!((&used["photons"], &used["neighbours"]), (&77.into(), &9.into()));
+    assert_eq!((&used["kernel"], &used["cone_k"]), (&"cone".into(), &2.0.into()));
+    assert_eq!((&used["equal_bandwidth"], &used["final_gather"]), (&true.into(), &"off".into()));
+    assert_eq!(used["caustic_photons"], 200_000);
+}
+
+#[test]
+fn another_renderers_integrator_is_replaced_in_one_line_and_keeps_its_depth() {
+    let dir = dir_with(r#"<integrator type="volpath"><integer name="max_depth" value="4"/></integrator>"#);
+    let run = dir.run(&["render", "a.xml", "--json"]).ends_with(0);
+    assert_eq!(integrator(&run)["name"], "photonmapper");
+    assert_eq!(integrator(&run)["max_depth"], 4);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    run.says("note: the scene asks for the integrator \"volpath\"");
+}
+
+#[test]
+fn moment_and_aov_are_unwrapped() {
+    let dir = dir_with(&format!(r#"<integrator type="moment">{OURS}</integrator>"#));
+    let run = dir.run(&["render", "a.xml", "--json"]).ends_with(0).does_not_say("note");
+    assert_eq!(integrator(&run)["photons"], 300);
+}
+
+#[test]
+fn the_command_line_chooses_the_integrator() {
+    let path = r#"<integrator type="path"><integer name="max_depth" value="6"/></integrator>"#;
+    let dir = dir_with(path);
+    for (flag, name) in [("photonmapper", "photonmapper"), ("path", "path"), ("scene", "path")] {
+        let run = dir.run(&["render", "a.xml", "--json", "--integrator", flag]).ends_with(0);
+        assert_eq!((&integrator(&run)["name"], &integrator(&run)["max_depth"]), (&name.into(), &6.into()));
+        assert_eq!(run.stderr, "");
+    }
+    let dir = dir_with(r#"<integrator type="ptracer"/>"#);
+    dir.run(&["render", "a.xml", "--integrator", "scene"]).ends_with(3).says("a.xml:2").says("ptracer");
+}
+
+#[test]
+fn flags_of_photons_mean_nothing_to_the_path_tracer() {
+    let dir = dir_with(OURS);
+    let args = ["render", "a.xml", "--integrator", "path", "--photons", "5", "--max-depth", "3"];
+    dir.run(&args).ends_with(0).says("warning: --photons mean nothing to the integrator path");
+}
+
+#[test]
+fn parameters_are_checked_where_they_stand() {
+    let one = |tag: &str, name: &str, value: &str| {
+        let property = format!(r#"<{tag} name="{name}" value="{value}"/>"#);
+        dir_with(&format!("<integrator type=\"photonmapper\">\n{property}</integrator>"))
+    };
+    for (tag, name, value) in [
+        ("integer", "neighbours", "1"),
+        ("float", "radius", "0"),
+        ("float", "cone_k", "0.5"),
+        ("string", "kernel", "tent"),
+        ("integer", "photons", "-1"),
+        ("string", "show", "nothing"),
+    ] {
+        one(tag, name, value).run(&["render", "a.xml"]).ends_with(3).says("a.xml:3").says("it must be");
+    }
+    let run = one("integer", "photnos", "5").run(&["render", "a.xml"]);
+    run.ends_with(3).says("a.xml:3").says("did you mean \"photons\"?");
+    one("integer", "rr_depth", "5").run(&["render", "a.xml"]).ends_with(0).says("Warning").says("a.xml:3");
+}
+
+#[test]
+fn path_tracing_and_photon_mapping_agree() {
+    // Of direct light the two make unbiased estimates, whose means are 1 % apart at the very most.
+    let dir = dir_with(OURS);
+    let args = ["render", "a.xml", "--spp", "64", "--max-depth", "2", "-o"];
+    dir.run(&[&args[..], &["p.exr"]].concat()).ends_with(0);
+    dir.run(&[&args[..], &["q.exr", "--integrator", "path"]].concat()).ends_with(0);
+    let measures = dir.run(&["compare", "p.exr", "q.exr", "--json"]).ends_with(0).json();
+    let ratio = measures["mean_ratio"].as_f64().unwrap();
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+}

@@ -1,0 +1,12 @@
+//! The command as its users meet it: what it writes, what it prints and how it ends.
+
+// `clippy.toml` allows it in tests, but not in what tests have in common.
+#![allow(clippy::unwrap_used)]
+
+mod integrators;
+mod limits;
+mod outputs;
+mod pictures;
+mod scenes;
+mod support;
+mod trouble;
