@@ -66,7 +66,6 @@ fn irradiance(world: &World, kernel: Kernel, radius: Option<f32>) -> MeanTest {
 /// Rejects an error of .3 % as well, which is four standard errors and more.
 fn within_three_per_mille(test: &MeanTest, exact: f64) -> Outcome {
     let outcome = test.against(exact);
-    println!("{:.2e} {outcome}", test.standard_error());
     assert!((test.mean() / exact - 1.0).abs() < 3e-3, "{outcome}");
     outcome
 }
