@@ -33,14 +33,16 @@ fn level() -> f64 {
 const MIRROR: f64 = 0.9;
 const ALBEDO: f64 = 0.5;
 
+/// Where light lands on the floor, (x, z), and how many W per unit of its two parameters it brings there.
+type Landing = ([f64; 2], f64);
+
 /// A way of lighting the cup, which is 1 high.
 struct Cup {
     light: LightKind,
     /// Where the caustic has its cusp on the x axis.
     cusp: f64,
-    /// Light of the parameters (a, s) in [−π/2, π/2] × [0, 2]: where it lands in the plane and how
-    /// many W per unit of both it brings there, after one reflection.
-    ray: fn(f64, f64) -> Option<([f64; 2], f64)>,
+    /// Light of the parameters (a, s) in [−π/2, π/2] × [0, 2], after one reflection.
+    ray: fn(f64, f64) -> Option<Landing>,
     /// Irradiance on the x axis, by the Jacobian.
     on_axis: fn(f64) -> f64,
 }
@@ -54,7 +56,7 @@ fn unit(angle: f64) -> [f64; 2] {
 /// sin 45° cos a da ds W. It is reflected again if its chord 2 cos a is shorter than s, there is no wall
 /// above s = 1, and light did not come in if the wall behind, 2 cos a away and so much higher, was in
 /// the way.
-fn parallel_ray(a: f64, s: f64) -> Option<([f64; 2], f64)> {
+fn parallel_ray(a: f64, s: f64) -> Option<Landing> {
     let chord = 2.0 * libm::cos(a);
     let ([wx, wz], [dx, dz]) = (unit(a), unit(PI + 2.0 * a));
     (s < chord.min(1.0) && s + chord > 1.0)
@@ -88,7 +90,7 @@ fn lamp_axis() -> DVec3 {
 
 /// A point light of 1 W/sr at (−1, 0) sends light at the angle a, which meets the wall at 2a after
 /// 2 cos a and goes s further, towards π + 3a.
-fn lamp_ray(a: f64, s: f64) -> Option<([f64; 2], f64)> {
+fn lamp_ray(a: f64, s: f64) -> Option<Landing> {
     let chord = 2.0 * libm::cos(a);
     let ([ox, oz], [wx, wz], [dx, dz]) = (unit(a), unit(2.0 * a), unit(PI + 3.0 * a));
     let direction = DVec3::new((chord + s) * ox, -LAMP, (chord + s) * oz).normalize();
