@@ -27,7 +27,8 @@ const TESTS: usize = 40;
 fn room(scale: f64, place: Transform) -> World {
     let s = scale as f32;
     let whole = Transform::scale(DVec3::splat(scale)).then(place);
-    let eye = Transform::look_at(DVec3::new(0.2, 1.1, 4.0), DVec3::new(0.0, 0.9, 0.0), DVec3::Y).unwrap();
+    let eye = Transform::look_at(DVec3::new(0.2, 1.1, 4.0), DVec3::new(0.0, 0.9, 0.0), DVec3::Y)
+        .expect("a direction");
     // The camera is moved, not scaled: its directions would be the same.
     let eye = Transform(nephroid::math::DAffine3 { translation: eye.0.translation * scale, ..eye.0 });
     let projection =
@@ -49,7 +50,8 @@ fn room(scale: f64, place: Transform) -> World {
     }
     let at = |p: Vec3| whole.point(p);
     b.point_light(at(Vec3::new(-0.4, 1.6, 0.5)), 0.5 * s * s);
-    let spot = Transform::look_at(DVec3::new(0.8, 1.9, 1.0), DVec3::new(0.2, 0.3, 0.0), DVec3::Y).unwrap();
+    let spot = Transform::look_at(DVec3::new(0.8, 1.9, 1.0), DVec3::new(0.2, 0.3, 0.0), DVec3::Y)
+        .expect("a direction");
     b.light(LightKind::Spot {
         to_world: spot.then(whole),
         intensity: Rgb::new(2.0, 1.5, 1.0) * (s * s),

@@ -79,8 +79,8 @@ type Kind = (&'static str, fn(&mut Builder));
 const KINDS: [Kind; 11] = [
     ("point", |b| b.point_light(Vec3::new(0.3, 0.2, 1.5), 2.0)),
     ("spot", |b| {
-        let to_world =
-            Transform::look_at(DVec3::new(-0.5, 0.4, 2.0), DVec3::new(0.1, 0.0, 0.0), DVec3::Y).unwrap();
+        let to_world = Transform::look_at(DVec3::new(-0.5, 0.4, 2.0), DVec3::new(0.1, 0.0, 0.0), DVec3::Y)
+            .expect("a direction");
         let intensity = Rgb::new(3.0, 2.0, 1.0);
         b.light(LightKind::Spot {
             to_world,
