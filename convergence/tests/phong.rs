@@ -104,7 +104,7 @@ fn room(exponent: f32) -> World {
 
 /// Blocks of 8 by 8 pixels agree to 1 % by gather rays, and to 2 % from the maps on the spot, which
 /// glossy lobes do not use: what either reads off the wall near its edges is too dark by .17 of the
-/// kernel's radius, of some .05 and .09.
+/// kernel's radius, of some .03 and .1.
 #[test]
 fn a_glossy_room_is_what_paths_make_it() {
     for exponent in EXPONENTS {

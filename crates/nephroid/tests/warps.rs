@@ -47,11 +47,11 @@ fn cones_are_uniform() {
     for (seed, cos_max) in [(4, -0.5f32), (5, 0.3), (6, 0.99), (7, 0.9999)] {
         let mut rng = Pcg32::new(seed);
         let sample = || {
-            let w = warp::square_to_cone(Vec2::from_array(rng.vec2_f32()), cos_max);
+            let w = warp::square_to_cone(Vec2::from_array(rng.vec2_f32()), 1.0 - cos_max);
             Some(w.to_array().map(f64::from))
         };
         let test = SphereTest { cos_theta: [f64::from(cos_max), 1.0], ..Default::default() };
-        let pdf = f64::from(warp::square_to_cone_pdf(cos_max));
+        let pdf = f64::from(warp::square_to_cone_pdf(1.0 - cos_max));
         judge(&format!("cone to {cos_max}"), &test.run(sample, |_| pdf));
     }
 }
