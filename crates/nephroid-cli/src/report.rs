@@ -84,6 +84,9 @@ impl Report<'_> {
         if !rendered.has_light {
             messages.warning("there is no light in the scene: the picture is black");
         }
+        if rendered.film.iterations() > 0 && rendered.statistics.samples_per_pixel == 0 {
+            messages.warning("stopped before every pixel had a sample: the rest of the picture is black");
+        }
         for map in self.maps().iter().filter(|map| map.plan.limited) {
             let (name, paths) = (map.name, grouped(map.numbers.paths));
             if map.numbers.photons == 0 {
