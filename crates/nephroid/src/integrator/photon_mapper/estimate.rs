@@ -47,12 +47,12 @@ pub(crate) struct PhotonMapper<'a> {
 }
 
 /// Of how many camera samples one reads the maps, and counts for the others, which bring direct light
-/// and emission only: what a map shows hardly changes within a pixel. At least 8 samples of a pixel
-/// read; 4 steps are whole multiples, so that a render may stop after any of them.
+/// and emission only: what a map shows hardly changes within a pixel. At least 4 samples of a pixel
+/// read. The steps of a session are whole multiples, so that a render may stop after any of them.
 fn reading_stride(samples_per_pixel: u32) -> u32 {
     [4, 2]
         .into_iter()
-        .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 8 * s)
+        .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 4 * s)
         .unwrap_or(1)
 }
 
