@@ -5,17 +5,17 @@
 //! with it, and prepares it; after that rendering cannot fail. A [`session::Session`] renders a world
 //! step by step into a [`film::Film`], which develops into a picture at any time.
 //!
-//! A room whose answer is known: inside a sphere of albedo ½ with a lamp of π W/sr at its centre, the
-//! wall shines with a radiance of 1 everywhere.
+//! A room whose answer is known: inside a sphere of radius 2 and albedo ½ with a lamp of 4π W/sr at its
+//! centre, the wall shines with a radiance of 1 everywhere.
 //!
 //! ```
 //! use nephroid::{camera::*, color::*, film::*, handle::*, integrator::*, light::*, material::*};
 //! use nephroid::{math::*, observer::*, scene::*, session::*, shape::*, texture::*, world::*};
 //! let (mut textures, mut materials, to_world) = (Textures::default(), Arena::default(), Transform::IDENTITY);
 //! let material = materials.push(Material::Diffuse { reflectance: textures.constant(Rgb::splat(0.5)) });
-//! let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 };
+//! let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 2.0 };
 //! let wall = Shape { name: "wall".into(), geometry, to_world, material, emission: None, flip_normals: true };
-//! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(std::f32::consts::PI) };
+//! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(4.0 * std::f32::consts::PI) };
 //! let (shapes, lights) = (vec![wall], vec![Light { name: "lamp".into(), kind }]);
 //! let film = FilmSettings { width: 16, height: 16, crop: None, filter: Filter::Box };
 //! let (meshes, camera) = (Arena::default(), Camera { to_world, projection: Projection::Orthographic });
