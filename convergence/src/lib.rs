@@ -5,7 +5,9 @@ mod optics;
 mod view;
 
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
-pub use view::{block_means, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders};
+pub use view::{
+    block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders,
+};
 
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;

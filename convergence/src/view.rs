@@ -63,15 +63,27 @@ pub fn mean_radiances(
     renders(world, method, samples_per_pixel, seeds).into_iter().map(mean).collect()
 }
 
-/// The means of square blocks of pixels of a picture `width` wide, row by row. `side` divides both of
-/// the picture's sides.
-pub fn block_means(picture: &[f64], width: usize, side: usize) -> Vec<f64> {
+/// The means of square blocks of pixels of pictures `width` wide: for each block, row by row, one number
+/// from each picture. `side` divides both of a picture's sides.
+pub fn block_samples(pictures: &[Vec<f64>], width: usize, side: usize) -> Vec<Vec<f64>> {
     let columns = width / side;
-    let mut sums = vec![0.0; picture.len() / (side * side)];
-    for (i, value) in picture.iter().enumerate() {
-        sums[i / width / side * columns + i % width / side] += value;
+    let pixels = pictures.first().map_or(0, Vec::len);
+    let mut blocks = vec![vec![0.0; pictures.len()]; pixels / (side * side)];
+    for (number, picture) in pictures.iter().enumerate() {
+        for (i, value) in picture.iter().enumerate() {
+            let block = &mut blocks[i / width / side * columns + i % width / side];
+            block[number] += value / (side * side) as f64;
+        }
     }
-    sums.iter().map(|sum| sum / (side * side) as f64).collect()
+    blocks
+}
+
+/// The samples `b` scaled by a factor between 1 − `bias` and 1 + `bias` that brings their mean as near as
+/// it can to the mean of `a`: a test that both have the same mean then forgives as much.
+pub fn forgiving(a: &[f64], b: &[f64], bias: f64) -> Vec<f64> {
+    let mean = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
+    let factor = (mean(a) / mean(b)).clamp(1.0 - bias, 1.0 + bias);
+    b.iter().map(|v| v * factor).collect()
 }
 
 /// The path tracer without limits.

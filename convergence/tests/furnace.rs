@@ -11,8 +11,9 @@
 use nephroid::color::Rgb;
 use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, Show};
 use nephroid::light::SphereSampling;
-use nephroid::math::Vec3;
+use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::photon_map::Kernel;
+use nephroid::shape::Geometry;
 use nephroid::transport::{DirectLights, LightChoice};
 use nephroid::world::World;
 use nephroid_convergence::{Builder, means, photon_mapper_variants, render, session};
@@ -225,5 +226,37 @@ fn a_glowing_wall_has_the_closed_form() {
     let world = b.build();
     for (name, method) in few_methods(None) {
         expect(name, &world, &method, 20, 1.0);
+    }
+}
+
+/// A10: two parallel plates without end that emit M₁, M₂ and reflect ρ₁, ρ₂ give off
+/// B₁ = (M₁ + ρ₁ M₂)/(1 − ρ₁ρ₂). Mirrors around a piece of them stand for the rest, so that most of
+/// the light takes paths with specular surfaces in it, which no estimator may lose or count twice.
+#[test]
+fn endless_parallel_plates_have_the_closed_form() {
+    let (emitted, albedo) = ([0.7f32, 0.2], [0.5f32, 0.8]);
+    let up = |z: f64| Transform::translate(DVec3::new(0.0, 0.0, z));
+    let mut b = Builder::seen_from(Vec3::new(0.05, 0.0, 0.9), Vec3::ZERO, 30.0, 8);
+    for i in 0..2 {
+        let (material, glow) = (b.diffuse(albedo[i]), b.constant(emitted[i]));
+        let plate = b.shape(Geometry::Rectangle, up(i as f64), material);
+        plate.emission = Some(glow);
+        plate.flip_normals = i == 1;
+    }
+    let mirror = b.mirror(1.0);
+    for quarter in 0..4 {
+        // Upright at x = −1 and facing +x, then turned into its place.
+        let wall = Transform::rotate(DVec3::Y, 90.0)
+            .then(Transform::translate(DVec3::new(-1.0, 0.0, 0.0)))
+            .then(Transform::rotate(DVec3::Z, 90.0 * f64::from(quarter)));
+        b.shape(Geometry::Rectangle, wall, mirror);
+    }
+    let world = b.build();
+    let [m1, m2, r1, r2] = [emitted[0], emitted[1], albedo[0], albedo[1]].map(f64::from);
+    let exact = (m1 + r1 * m2) / (1.0 - r1 * r2);
+    expect("path", &world, &path(None), 40, exact);
+    for direct in [DirectSource::Rays, DirectSource::Map] {
+        let config = PhotonMapperConfig { direct, final_gather: FinalGather::Off, ..mapper() };
+        expect(&format!("{direct:?}"), &world, &Method::PhotonMapper(config), 40, exact);
     }
 }

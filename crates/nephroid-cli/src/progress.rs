@@ -40,7 +40,7 @@ pub struct Watch {
     begun: Instant,
     /// When the time is up, and how long that is.
     limit: Option<Duration>,
-    /// Whether there is a picture to stop with.
+    /// Whether a picture has been begun: there is nothing to stop with before.
     may_stop: AtomicBool,
     interrupted: Arc<AtomicBool>,
     /// Camera samples of all passes, if known, and those of the steps before this one.
@@ -90,9 +90,8 @@ impl Watch {
         self.interrupted.load(Ordering::Relaxed)
     }
 
-    /// A step was finished: from now on time may run out. Whether it has, too nearly for another.
+    /// Whether the time is up, too nearly for another step.
     pub fn time_is_up(&self) -> bool {
-        self.may_stop.store(true, Ordering::Relaxed);
         self.is_past(1.0 - GRACE)
     }
 
@@ -121,6 +120,7 @@ impl Now {
 
 impl Observer for Watch {
     fn begin(&self, phase: Phase, work: u64) {
+        self.may_stop.fetch_or(phase == Phase::Camera, Ordering::Relaxed);
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         let last = now.phase.map(|(phase, _)| phase);
         now.enter(Some(phase));
@@ -204,11 +204,12 @@ mod tests {
     }
 
     #[test]
-    fn time_stops_nothing_before_there_is_a_picture() {
+    fn time_stops_nothing_before_a_picture_is_begun() {
         let watch = watch(Some(1e-9));
         std::thread::sleep(Duration::from_millis(1));
-        assert!(!watch.cancelled());
-        assert!(watch.time_is_up());
+        watch.begin(Phase::Photons, 1);
+        assert!(watch.time_is_up() && !watch.cancelled());
+        watch.begin(Phase::Camera, 1);
         assert!(watch.cancelled());
     }
 

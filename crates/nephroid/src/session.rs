@@ -5,10 +5,10 @@ use crate::integrator::{
     Maps, Method, PhotonMapper, PhotonMapperConfig, PictureSums, Scratch, path_radiance,
 };
 use crate::observer::{Observer, Phase, Work};
-use crate::transport::{CameraPass, Ledger, PhotonPlan, camera_pass};
+use crate::transport::{CameraPass, Exposure, Ledger, PhotonPlan, camera_pass};
 use crate::world::World;
 
-/// Camera samples a pixel gets in one step.
+/// Camera samples a pixel gets in one step: a multiple of the strides at which photon maps are read.
 const STEP_SAMPLES: u32 = 4;
 
 /// How to render.
@@ -92,7 +92,8 @@ impl<'w> Session<'w> {
     }
 
     /// Renders on: the photons of an iteration if one begins, and a few samples of every pixel.
-    /// Returns false, with the film as it was, if the observer cancelled.
+    /// Returns false if the observer cancelled; the film then has what was finished, tile by
+    /// tile, and the session is at its end.
     pub fn step(&mut self, observer: &dyn Observer) -> bool {
         let whole = self.settings.samples_per_pixel.max(1);
         if self.samples >= whole {
@@ -181,12 +182,11 @@ impl<'w> Session<'w> {
         self.take(result)
     }
 
-    /// Adds a pass to the film.
-    fn take(&mut self, result: Option<(Vec<crate::film::PixelSum>, PictureSums)>) -> bool {
-        let Some((sums, picture)) = result else { return false };
-        self.film.add_iteration(&sums);
-        self.statistics.picture.append(&picture);
-        true
+    /// Adds a pass to the film, whole or as far as it got.
+    fn take(&mut self, exposure: Exposure<PictureSums>) -> bool {
+        self.film.add_iteration(&exposure.sums);
+        self.statistics.picture.append(&exposure.total);
+        exposure.complete
     }
 
     /// Takes new maps into the statistics.

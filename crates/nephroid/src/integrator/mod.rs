@@ -48,7 +48,7 @@ pub(crate) struct Components {
     pub caustic: Rgb,
 }
 
-/// Sums of [`Components`] over a picture.
+/// Sums over a picture of radiance by the kind of path that brought it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureSums {
     /// Lamps and sky.

@@ -3,7 +3,7 @@ use std::f32::consts::PI;
 use super::emitter::{Emission, Incident, Source, Target};
 use crate::color::Rgb;
 use crate::handle::Handle;
-use crate::math::real::{acos, atan2, sin_cos};
+use crate::math::real::{atan2, sin_cos};
 use crate::math::{DMat3, Transform, Vec2, Vec3, warp};
 use crate::sampling::Discrete2d;
 use crate::texture::{Image, Textures, Wrap};
@@ -95,7 +95,7 @@ impl EnvironmentMap {
 
     /// Radiance seen in a world direction.
     pub fn radiance(&self, textures: &Textures, direction: Vec3) -> Rgb {
-        self.texture(textures, self.to_square(direction))
+        self.texture(textures, self.to_square(direction).0)
     }
 
     fn texture(&self, textures: &Textures, uv: Vec2) -> Rgb {
@@ -108,10 +108,13 @@ impl EnvironmentMap {
         (row(j) * (1.0 - b) + row(j + 1) * b) * self.scale
     }
 
-    fn to_square(&self, direction: Vec3) -> Vec2 {
+    /// The place of a direction in the image, and the sine of its angle to the poles, which next to
+    /// them only the direction tells.
+    fn to_square(&self, direction: Vec3) -> (Vec2, f32) {
         let d = (self.to_local * direction.as_dvec3()).as_vec3().normalize();
         let u = atan2(d.x, -d.z) / (2.0 * PI);
-        Vec2::new(u - u.floor(), acos(d.y) / PI)
+        let sin_theta = (d.x * d.x + d.z * d.z).sqrt();
+        (Vec2::new(u - u.floor(), atan2(sin_theta, d.y) / PI), sin_theta)
     }
 
     fn to_direction(&self, uv: Vec2) -> (Vec3, f32) {
@@ -123,8 +126,7 @@ impl EnvironmentMap {
 
     /// Density of a world direction per unit solid angle.
     pub fn pdf(&self, direction: Vec3) -> f32 {
-        let uv = self.to_square(direction);
-        let sin_theta = sin_cos(PI * uv.y).0;
+        let (uv, sin_theta) = self.to_square(direction);
         if sin_theta > 0.0 { self.table.pdf(uv) / (2.0 * PI * PI * sin_theta) } else { 0.0 }
     }
 

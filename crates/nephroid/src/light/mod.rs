@@ -6,6 +6,9 @@ mod emitter;
 mod environment;
 mod spot;
 
+#[cfg(test)]
+mod sampling_tests;
+
 pub(crate) use area::AreaEmitter;
 pub use emitter::{Emission, Incident, Source, SphereSampling};
 pub(crate) use emitter::{Emitter, EmitterKind, Lookup, Target};

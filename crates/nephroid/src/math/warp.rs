@@ -79,11 +79,11 @@ pub fn square_to_cosine_hemisphere_pdf(w: Vec3) -> f32 {
     w.z.max(0.0) / PI
 }
 
-/// Uniform in the cone of directions within an angle of `+z`, given by its cosine.
+/// Uniform in the cone of directions within an angle θ of `+z`, given by 1 − cos θ: the cosine itself
+/// would lose narrow cones, and below .02° it is one. See [`one_minus_cos`].
 #[inline]
-pub fn square_to_cone(u: Vec2, cos_max: f32) -> Vec3 {
-    // Written in 1 − cos so that narrow cones keep their precision.
-    let one_minus_cos = u.x * (1.0 - cos_max);
+pub fn square_to_cone(u: Vec2, one_minus_cos_max: f32) -> Vec3 {
+    let one_minus_cos = u.x * one_minus_cos_max;
     let z = 1.0 - one_minus_cos;
     let r = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
     let (sin, cos) = sin_cos(2.0 * PI * u.y);
@@ -92,8 +92,15 @@ pub fn square_to_cone(u: Vec2, cos_max: f32) -> Vec3 {
 
 /// Density of [`square_to_cone`] per unit solid angle inside the cone.
 #[inline]
-pub fn square_to_cone_pdf(cos_max: f32) -> f32 {
-    1.0 / (2.0 * PI * (1.0 - cos_max))
+pub fn square_to_cone_pdf(one_minus_cos_max: f32) -> f32 {
+    1.0 / (2.0 * PI * one_minus_cos_max)
+}
+
+/// 1 − cos θ = 2 sin²(θ/2), to full precision for small angles, too.
+#[inline]
+pub fn one_minus_cos(theta: f32) -> f32 {
+    let sin = sin_cos(0.5 * theta).0;
+    2.0 * sin * sin
 }
 
 /// Density ∝ cosⁿ about `+z` on the hemisphere (Lafortune and Willems 1994).

@@ -33,8 +33,18 @@ pub(crate) struct PixelSample {
     pub sampler: Sampler,
 }
 
+/// What a camera pass gathered.
+pub(crate) struct Exposure<T> {
+    /// One for each pixel of the window, row by row.
+    pub sums: Vec<PixelSum>,
+    /// What the estimates added up besides.
+    pub total: T,
+    /// Whether every pixel has its samples; where the observer cancelled, some tiles have none.
+    pub complete: bool,
+}
+
 /// Takes samples of every pixel of the window with `estimate`, which adds to a total `T` of its own
-/// and returns radiance. The sums are the same however the work is shared out. `None` if cancelled.
+/// and returns radiance. The sums are the same however the work is shared out.
 pub(crate) fn camera_pass<T: Default + Send, S>(
     world: &World,
     pass: &CameraPass,
@@ -42,23 +52,23 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
     scratch: impl Fn() -> S + Sync,
     join: impl Fn(&mut T, &T),
     estimate: impl Fn(PixelSample, &mut S, &mut T) -> crate::color::Rgb + Sync,
-) -> Option<(Vec<PixelSum>, T)> {
+) -> Exposure<T> {
     let window = world.scene().film.window();
     let filter = FilterSampler::new(world.scene().film.filter);
     let pixels = u64::from(window.width) * u64::from(window.height);
     let work = Work::begin(observer, Phase::Camera, pixels * u64::from(pass.samples));
     let columns = window.width.div_ceil(TILE);
     let key = Key::new(pass.seed, pass.iteration, Stream::Camera);
-    let tiles: Vec<(Vec<PixelSum>, T)> = (0..columns * window.height.div_ceil(TILE))
+    let tiles: Vec<Option<(Vec<PixelSum>, T)>> = (0..columns * window.height.div_ceil(TILE))
         .into_par_iter()
         .map_init(&scratch, |scratch, tile| {
             let (x0, y0) = (tile % columns * TILE, tile / columns * TILE);
             let (x1, y1) = ((x0 + TILE).min(window.width), (y0 + TILE).min(window.height));
+            if work.cancelled() {
+                return None;
+            }
             let mut total = T::default();
             let mut sums = Vec::with_capacity(((x1 - x0) * (y1 - y0)) as usize);
-            if work.cancelled() {
-                return (sums, total);
-            }
             for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
                 let (x, y) = (x + window.x, y + window.y);
                 let key = key.with(u64::from(y) << 32 | u64::from(x));
@@ -76,15 +86,14 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
                 sums.push(sum);
             }
             work.advance(sums.len() as u64 * u64::from(pass.samples));
-            (sums, total)
+            Some((sums, total))
         })
         .collect();
-    if work.cancelled() {
-        return None;
-    }
+    let complete = tiles.iter().all(Option::is_some);
     let mut film = vec![PixelSum::default(); pixels as usize];
     let mut total = T::default();
-    for (tile, (sums, part)) in (0..).zip(tiles) {
+    for (tile, done) in (0..).zip(tiles) {
+        let Some((sums, part)) = done else { continue };
         join(&mut total, &part);
         let (x0, y0) = (tile % columns * TILE, tile / columns * TILE);
         let width = (x0 + TILE).min(window.width) - x0;
@@ -93,5 +102,5 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
             film[start..start + sums.len()].copy_from_slice(sums);
         }
     }
-    Some((film, total))
+    Exposure { sums: film, total, complete }
 }

@@ -7,7 +7,7 @@ mod photon_pass;
 mod roulette;
 mod walk;
 
-pub(crate) use camera_pass::{CameraPass, PixelSample, camera_pass};
+pub(crate) use camera_pass::{CameraPass, Exposure, PixelSample, camera_pass};
 pub use direct::DirectLights;
 pub(crate) use direct::{Partner, direct_light, light_pdf, sample_lights, sky_by_bsdf};
 pub use ledger::{Balance, Ledger};
