@@ -1,4 +1,54 @@
-//! Photon mapping: a renderer for caustics, light through glass and water, and light in fog.
+//! Photon mapping: a renderer for caustics, for light through glass and water, and for all light that
+//! bounces between surfaces.
+//!
+//! A [`scene::Scene`] is plain data. [`world::World::new`] checks it, names everything that is wrong
+//! with it, and prepares it; after that rendering cannot fail. A [`session::Session`] renders a world
+//! step by step into a [`film::Film`], which develops into a picture at any time.
+//!
+//! A room whose answer is known: inside a sphere of radius 2 and albedo ½ with a lamp of 4π W/sr at its
+//! centre, the wall shines with a radiance of 1 everywhere.
+//!
+//! ```
+//! use nephroid::{camera::*, color::*, film::*, handle::*, integrator::*, light::*, material::*};
+//! use nephroid::{math::*, observer::*, scene::*, session::*, shape::*, texture::*, world::*};
+//! let (mut textures, mut materials, to_world) = (Textures::default(), Arena::default(), Transform::IDENTITY);
+//! let material = materials.push(Material::Diffuse { reflectance: textures.constant(Rgb::splat(0.5)) });
+//! let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 2.0 };
+//! let wall = Shape { name: "wall".into(), geometry, to_world, material, emission: None, flip_normals: true };
+//! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(4.0 * std::f32::consts::PI) };
+//! let (shapes, lights) = (vec![wall], vec![Light { name: "lamp".into(), kind }]);
+//! let film = FilmSettings { width: 16, height: 16, crop: None, filter: Filter::Box };
+//! let (meshes, camera) = (Arena::default(), Camera { to_world, projection: Projection::Orthographic });
+//! let world = World::new(Scene { camera, film, textures, materials, meshes, shapes, lights }).unwrap();
+//! let settings = RenderSettings { method: Method::default(), samples_per_pixel: 4, seed: 0 };
+//! let mut session = Session::new(&world, settings, &Silent);
+//! while !session.iteration_is_complete() { session.step(&Silent); }
+//! assert!((session.film().develop().mean().g - 1.0).abs() < 0.02);
+//! ```
+//!
+//! # Where to look
+//!
+//! | for | see |
+//! |---|---|
+//! | what a scene consists of | [`scene`], [`shape`], [`material`], [`light`], [`texture`], [`camera`] |
+//! | how to render, and how well | [`session`], [`integrator::Method`], [`integrator::PhotonMapperConfig`] |
+//! | watching and stopping a render | [`observer::Observer`] |
+//! | pictures, filters, tone mapping | [`film`] |
+//! | photons by themselves | [`photon_map`], [`transport::photon_pass`] |
+//! | vectors and transforms | [`math`], which re-exports glam's |
+//!
+//! Scenes in files, and files of pictures, are read and written by the crate `nephroid-formats`; this
+//! one does no I/O.
+//!
+//! # What it promises
+//!
+//! - The same scene, settings and seed give the same bits, on any number of threads.
+//! - Units are SI: metres (or any other length, used throughout), W, W/m², W/(m²·sr). A name says so where
+//!   an angle is in degrees.
+//! - Colours are linear RGB with the primaries of sRGB.
+//! - No length is built in: a scene scaled by a power of two gives the same picture.
+//!
+//! Participating media, rough metals and glass, depth of field and instances are not there yet.
 
 mod bvh;
 pub mod camera;
@@ -18,3 +68,8 @@ pub mod shape;
 pub mod texture;
 pub mod transport;
 pub mod world;
+
+/// The program in the README is compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
