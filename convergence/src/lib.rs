@@ -23,7 +23,7 @@ use nephroid::scene::Scene;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
-use nephroid::transport::{MapPlan, PhotonPass, PhotonPlan, WalkSettings, photon_pass};
+use nephroid::transport::{Extras, MapPlan, PhotonPass, PhotonPlan, WalkSettings, photon_pass};
 use nephroid::world::World;
 use std::ops::Range;
 
@@ -178,7 +178,8 @@ pub fn means(world: &World, method: &Method, samples_per_pixel: u32, seeds: Rang
 pub fn photons(world: &World, settings: &WalkSettings, paths: u64, seed: u64) -> PhotonPass {
     let map = MapPlan { paths, ..MapPlan::default() };
     let plan = PhotonPlan { global: map, caustic: map };
-    photon_pass(world, settings, &plan, true, seed, 0, &Silent).expect("nothing cancels")
+    let extras = Extras { direct: true, afterglow: false };
+    photon_pass(world, settings, &plan, extras, seed, 0, &Silent).expect("nothing cancels")
 }
 
 /// Every combination of kernel, bandwidth, source of direct light and final gathering, named, with

@@ -160,7 +160,9 @@ impl<'w> Session<'w> {
     ) -> bool {
         let world = self.world;
         if self.maps.is_none() {
-            let built = Maps::build(world, config, &self.plan, self.settings.seed, self.iteration, observer);
+            let RenderSettings { seed, samples_per_pixel, .. } = self.settings;
+            let gathers = config.gather_rays(samples_per_pixel).is_some();
+            let built = Maps::build(world, config, &self.plan, gathers, seed, self.iteration, observer);
             let Some(maps) = built else { return false };
             self.count(&maps);
             self.maps = Some(maps);

@@ -11,6 +11,6 @@ pub(crate) use camera_pass::{CameraPass, Exposure, PixelSample, camera_pass};
 pub use direct::DirectLights;
 pub(crate) use direct::{Partner, direct_light, light_pdf, sample_lights, sky_by_bsdf};
 pub use ledger::{Balance, Ledger};
-pub use photon_pass::{MapPlan, PhotonPass, PhotonPlan, PhotonTargets, photon_pass};
+pub use photon_pass::{Extras, MapPlan, PhotonPass, PhotonPlan, PhotonTargets, photon_pass};
 pub(crate) use roulette::survival;
 pub use walk::{LightChoice, PhotonKind, WalkSettings};

@@ -33,6 +33,15 @@ pub struct PhotonTargets {
     pub store_direct: bool,
 }
 
+/// What a photon pass stores besides indirect light and caustics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Light that comes straight from a light, in the global map.
+    pub direct: bool,
+    /// The light of caustics after one more bounce, in a map of its own.
+    pub afterglow: bool,
+}
+
 /// How many paths a render emits for each map in each iteration: fixed before the first is traced,
 /// so that dividing by them is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,6 +70,8 @@ pub struct PhotonPass {
     pub global: Photons,
     /// Those of the caustic map.
     pub caustic: Photons,
+    /// Those that the paths for the caustic map stored one bounce later, if asked for.
+    pub afterglow: Photons,
     /// The books of the paths for the global map, as sums over them.
     pub ledger: Ledger,
 }
@@ -132,7 +143,7 @@ fn count(
                     walk(world, settings, path, &mut sampler, &mut books.lights, |_, kind| {
                         match kind {
                             PhotonKind::Caustic => stored.1 += 1,
-                            PhotonKind::Global => stored.0 += 1,
+                            PhotonKind::Global | PhotonKind::Afterglow => stored.0 += 1,
                             PhotonKind::Direct => stored.0 += u64::from(targets.store_direct),
                         }
                         Next::Continue
@@ -154,45 +165,51 @@ fn count(
     }
 }
 
-/// Emits the paths of one iteration: what photon methods build their maps of. `store_direct` is that
-/// of [`PhotonTargets`]. `None` if the observer cancelled.
+/// Emits the paths of one iteration: what photon methods build their maps of. `None` if the observer
+/// cancelled.
 pub fn photon_pass(
     world: &World,
     settings: &WalkSettings,
     plan: &PhotonPlan,
-    store_direct: bool,
+    extras: Extras,
     seed: u64,
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<PhotonPass> {
     let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
     let global_key = Key::new(seed, iteration, Stream::GlobalPhotons);
-    let (global, ledger) = emit(world, settings, plan.global.paths, global_key, &work, |kind| match kind {
-        PhotonKind::Global => (true, Next::Continue),
-        PhotonKind::Direct => (store_direct, Next::Continue),
-        PhotonKind::Caustic => (false, Next::Continue),
-    })?;
+    let ([global, _], ledger) =
+        emit(world, settings, plan.global.paths, global_key, &work, |kind| match kind {
+            PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
+            PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
+            PhotonKind::Caustic => (None, Next::Continue),
+        })?;
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
-    let (caustic, _) = emit(world, settings, plan.caustic.paths, caustic_key, &work, |kind| {
-        // Whatever follows the first bounce that is not specular is the global map's.
-        (kind == PhotonKind::Caustic, Next::Stop)
-    })?;
-    Some(PhotonPass { global, caustic, ledger })
+    let beyond = if extras.afterglow { Next::Continue } else { Next::Stop };
+    let ([caustic, afterglow], _) =
+        emit(world, settings, plan.caustic.paths, caustic_key, &work, |kind| match kind {
+            PhotonKind::Caustic => (Some(0), beyond),
+            PhotonKind::Afterglow => (Some(1), Next::Stop),
+            // Whatever else follows is the global map's.
+            PhotonKind::Direct | PhotonKind::Global => (None, Next::Stop),
+        })?;
+    Some(PhotonPass { global, caustic, afterglow, ledger })
 }
 
+/// Emits paths and stores their photons in two lists, as `keep` says.
 fn emit(
     world: &World,
     settings: &WalkSettings,
     paths: u64,
     key: Key,
     work: &Work<'_>,
-    keep: impl Fn(PhotonKind) -> (bool, Next) + Sync,
-) -> Option<(Photons, Ledger)> {
-    let chunks: Vec<(Vec<Photon>, Ledger)> = (0..paths.div_ceil(CHUNK))
+    keep: impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync,
+) -> Option<([Photons; 2], Ledger)> {
+    let chunks: Vec<([Vec<Photon>; 2], Ledger)> = (0..paths.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
             let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-            let mut stored = Vec::new();
+            let mut stored: [Vec<Photon>; 2] = Default::default();
             let mut ledger = Ledger::new(world.light_count());
             if work.cancelled() {
                 return (stored, ledger);
@@ -201,9 +218,9 @@ fn emit(
             for path in range {
                 let mut sampler = Sampler::new(Sequence::Independent, key, path);
                 walk(world, settings, path, &mut sampler, &mut ledger.lights, |photon, kind| {
-                    let (store, next) = keep(kind);
-                    if store {
-                        stored.push(photon);
+                    let (list, next) = keep(kind);
+                    if let Some(list) = list {
+                        stored[list].push(photon);
                     }
                     next
                 });
@@ -215,11 +232,13 @@ fn emit(
     if work.cancelled() {
         return None;
     }
-    let mut photons = Vec::with_capacity(chunks.iter().map(|c| c.0.len()).sum());
+    let mut photons: [Vec<Photon>; 2] = Default::default();
     let mut ledger = Ledger::new(world.light_count());
-    for (mut stored, books) in chunks {
-        photons.append(&mut stored);
+    for (stored, books) in chunks {
+        for (all, mut more) in photons.iter_mut().zip(stored) {
+            all.append(&mut more);
+        }
         ledger.append(&books);
     }
-    Some((Photons::new(paths, photons), ledger))
+    Some((photons.map(|list| Photons::new(paths, list)), ledger))
 }

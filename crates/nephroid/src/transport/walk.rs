@@ -39,6 +39,9 @@ pub enum PhotonKind {
     Direct,
     /// L S+ D: the caustic map's.
     Caustic,
+    /// L S+ D S* D: a caustic's light after one more bounce. The global map's, and known apart, since
+    /// gather rays do not bring it.
+    Afterglow,
     /// All the rest: the global map's.
     Global,
 }
@@ -112,6 +115,8 @@ pub(super) fn walk(
     }
     let mut roulette = [0.0f64; 3];
     let (mut specular, mut other) = (0u32, 0u32);
+    // Whether the first surface that was not specular was lit by one that was.
+    let mut from_caustic = false;
     loop {
         let Some(hit) = world.intersect(&ray) else {
             book.escape(power);
@@ -137,6 +142,7 @@ pub(super) fn walk(
             let kind = match (specular, other) {
                 (0, 0) => PhotonKind::Direct,
                 (_, 0) => PhotonKind::Caustic,
+                (_, 1) if from_caustic => PhotonKind::Afterglow,
                 _ => PhotonKind::Global,
             };
             if visit(photon, kind) == Next::Stop {
@@ -166,6 +172,7 @@ pub(super) fn walk(
         if sample.dirac {
             specular += 1;
         } else {
+            from_caustic |= other == 0 && specular > 0;
             other += 1;
         }
         ray = leave(&hit.point, sample.wi);

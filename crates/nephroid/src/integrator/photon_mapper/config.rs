@@ -124,7 +124,12 @@ impl PhotonMapperConfig {
             || (self.show == Show::Direct && self.direct == DirectSource::Map);
         PhotonTargets {
             global: if shows_global { self.photons } else { 0 },
-            caustic: if self.shows_caustics() { self.caustic_photons } else { 0 },
+            // Gather rays leave the light of caustics on other surfaces to photons of the same paths.
+            caustic: if self.shows_caustics() || (shows_global && self.final_gather != FinalGather::Off) {
+                self.caustic_photons
+            } else {
+                0
+            },
             emit: self.emit,
             emit_max: self.emit_max,
             store_direct: self.direct == DirectSource::Map,

@@ -41,9 +41,9 @@ pub(crate) struct PhotonMapper<'a> {
     /// Widths of the estimates on surfaces that the camera sees.
     global_bandwidth: Bandwidth,
     caustic_bandwidth: Bandwidth,
-    /// Radii of the estimates where gather rays land.
+    afterglow_bandwidth: Bandwidth,
+    /// Radius of the estimates where gather rays land.
     global_radius: f32,
-    caustic_radius: f32,
 }
 
 /// Of how many camera samples one reads the maps, and counts for the others, which bring direct light
@@ -79,7 +79,6 @@ impl<'a> PhotonMapper<'a> {
         maps: &'a Maps,
         samples_per_pixel: u32,
     ) -> Self {
-        let narrow = |map: &PhotonMap| config.radius.unwrap_or_else(|| map.typical_radius(GATHER_PHOTONS));
         let stride = reading_stride(samples_per_pixel);
         Self {
             world,
@@ -89,8 +88,8 @@ impl<'a> PhotonMapper<'a> {
             stride,
             global_bandwidth: config.bandwidth(&maps.global),
             caustic_bandwidth: config.bandwidth(&maps.caustic),
-            global_radius: narrow(&maps.global),
-            caustic_radius: narrow(&maps.caustic),
+            afterglow_bandwidth: config.bandwidth(&maps.afterglow),
+            global_radius: config.radius.unwrap_or_else(|| maps.global.typical_radius(GATHER_PHOTONS)),
         }
     }
 
@@ -211,7 +210,17 @@ impl<'a> PhotonMapper<'a> {
                 })
                 .sum();
             out.global += throughput * (found / rays as f32);
+            if gathers {
+                out.global += throughput * self.afterglow(&vertex, scratch);
+            }
         }
+    }
+
+    /// The light of caustics on other surfaces, which gather rays leave out: a small bright caustic
+    /// that few of them chance upon makes white specks, and its photons one bounce on do not.
+    fn afterglow(&self, vertex: &Vertex<'_>, scratch: &mut Scratch) -> Rgb {
+        let smooth = Vertex { bsdf: &vertex.bsdf.diffuse_part(), ..*vertex };
+        self.look_up(&self.maps.afterglow, &smooth, self.afterglow_bandwidth, scratch).1
     }
 
     fn direct(&self, vertex: &Vertex<'_>, sampler: &mut Sampler) -> Rgb {
@@ -264,8 +273,10 @@ impl<'a> PhotonMapper<'a> {
         guide
     }
 
-    /// One gather ray: on over specular surfaces to the first that is not, whose direct, global and
-    /// caustic light it brings home. Emission on the way is direct light's and the caustic map's.
+    /// One gather ray: on over specular surfaces to the first that is not, whose direct and global light
+    /// it brings home, and its caustics as far as it was sent by a glossy lobe: the others come by
+    /// [`Self::afterglow`]. Emission on the way is direct light's
+    /// and the caustic map's.
     /// Where that surface is nearer than the map can resolve, a ray goes on from it in place of the
     /// look-up; corners stay as bright as they are.
     fn gather_ray(
@@ -279,6 +290,9 @@ impl<'a> PhotonMapper<'a> {
         let Some((mut ray, mut throughput)) = start_gather(vertex, guide, sampler) else {
             return found;
         };
+        // The share that a glossy lobe has in the last surface's reflection: through it caustics are seen
+        // as they are, and the rest of that surface has them by its afterglow.
+        let mut sharp = glossy_share(vertex.bsdf, vertex.wo, ray.direction);
         let mut depth = vertex.depth + 1;
         let (mut distance, mut near) = (0.0, 0);
         // A surface at the last segment can still reflect nothing: light needs one more.
@@ -296,21 +310,26 @@ impl<'a> PhotonMapper<'a> {
                 if self.config.direct == DirectSource::Rays {
                     found += throughput * self.direct(&there, sampler);
                 }
-                let fixed = |radius| Bandwidth::Fixed { radius };
-                let caustic = self.look_up(&self.maps.caustic, &there, fixed(self.caustic_radius), scratch);
-                found += throughput * caustic.1;
+                if !sharp.is_black() {
+                    let caustic = self.look_up(&self.maps.caustic, &there, self.caustic_bandwidth, scratch).1;
+                    found += throughput * sharp * caustic;
+                }
                 if distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES {
-                    let (direct, other) =
-                        self.look_up(&self.maps.global, &there, fixed(self.global_radius), scratch);
+                    let bandwidth = Bandwidth::Fixed { radius: self.global_radius };
+                    let (direct, other) = self.look_up(&self.maps.global, &there, bandwidth, scratch);
                     found += throughput * (direct + other);
                     break;
                 }
+                found += throughput * self.afterglow(&there, scratch);
                 near += 1;
                 distance = 0.0;
             }
             let Some((next, carried)) = scatter(&bsdf, &hit.point, wo, throughput, depth - 1, sampler) else {
                 break;
             };
+            if !bsdf.is_dirac() {
+                sharp = glossy_share(&bsdf, wo, next.direction);
+            }
             (ray, throughput) = (next, carried);
             depth += 1;
         }
@@ -335,6 +354,15 @@ fn start_gather(vertex: &Vertex<'_>, guide: Option<&Guide>, sampler: &mut Sample
     let pdf = guide_share * guide.map_or(0.0, |g| g.pdf(wi)) + (1.0 - guide_share) * bsdf.pdf(wo, wi);
     let weight = bsdf.eval(wo, wi) * (bsdf.cosine(wi) / pdf);
     (pdf > 0.0 && !weight.is_black()).then(|| (leave(point, wi), weight))
+}
+
+/// The share of a BSDF that is in its glossy lobe.
+fn glossy_share(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Rgb {
+    if !bsdf.has_glossy_lobe() {
+        return Rgb::BLACK;
+    }
+    let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
+    bsdf.glossy_part().eval(wo, wi).zip(bsdf.eval(wo, wi), share)
 }
 
 /// Samples the next segment of a camera path, with roulette.

@@ -10,13 +10,15 @@ pub(crate) use estimate::{PhotonMapper, Scratch};
 
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::PhotonMap;
-use crate::transport::{Ledger, PhotonPass, PhotonPlan, photon_pass};
+use crate::transport::{Extras, Ledger, PhotonPlan, photon_pass};
 use crate::world::World;
 
 /// The photon maps of one iteration.
 pub(crate) struct Maps {
     pub global: PhotonMap,
     pub caustic: PhotonMap,
+    /// Light of caustics after one more bounce; empty unless gather rays are sent.
+    pub afterglow: PhotonMap,
     pub ledger: Ledger,
 }
 
@@ -26,27 +28,24 @@ impl Maps {
         world: &World,
         config: &PhotonMapperConfig,
         plan: &PhotonPlan,
+        gathers: bool,
         seed: u64,
         iteration: u64,
         observer: &dyn Observer,
     ) -> Option<Self> {
-        let store_direct = config.direct == DirectSource::Map;
+        let extras = Extras { direct: config.direct == DirectSource::Map, afterglow: gathers };
         let settings = config.walk_settings();
-        let PhotonPass { global, caustic, ledger } =
-            photon_pass(world, &settings, plan, store_direct, seed, iteration, observer)?;
-        let work = Work::begin(observer, Phase::Maps, 2);
-        let (global, caustic) = rayon::join(
-            || {
-                let map = PhotonMap::build(global);
-                work.advance(1);
-                map
-            },
-            || {
-                let map = PhotonMap::build(caustic);
-                work.advance(1);
-                map
-            },
+        let pass = photon_pass(world, &settings, plan, extras, seed, iteration, observer)?;
+        let work = Work::begin(observer, Phase::Maps, 3);
+        let build = |photons| {
+            let map = PhotonMap::build(photons);
+            work.advance(1);
+            map
+        };
+        let (global, (caustic, afterglow)) = rayon::join(
+            || build(pass.global),
+            || rayon::join(|| build(pass.caustic), || build(pass.afterglow)),
         );
-        Some(Self { global, caustic, ledger })
+        Some(Self { global, caustic, afterglow, ledger: pass.ledger })
     }
 }
