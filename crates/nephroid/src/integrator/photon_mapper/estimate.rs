@@ -216,6 +216,34 @@ impl<'a> PhotonMapper<'a> {
         }
     }
 
+    /// What a gather ray brings from where it lands: all of the light, or from near by what no ray that
+    /// goes on from there will bring. `sharp` is the share for which it brings caustics.
+    fn light_at(
+        &self,
+        vertex: &Vertex<'_>,
+        far: bool,
+        sharp: Rgb,
+        sampler: &mut Sampler,
+        scratch: &mut Scratch,
+    ) -> Rgb {
+        let mut light = Rgb::BLACK;
+        if self.config.direct == DirectSource::Rays {
+            light += self.direct(vertex, sampler);
+        }
+        if !sharp.is_black() {
+            light += sharp * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
+        }
+        if far || self.config.direct == DirectSource::Map {
+            let bandwidth = Bandwidth::Fixed { radius: self.global_radius };
+            let (direct, other) = self.look_up(&self.maps.global, vertex, bandwidth, scratch);
+            light += if far { direct + other } else { direct };
+        }
+        if !far {
+            light += self.afterglow(vertex, scratch);
+        }
+        light
+    }
+
     /// The light of caustics on other surfaces, which gather rays leave out: a small bright caustic
     /// that few of them chance upon makes white specks, and its photons one bounce on do not.
     fn afterglow(&self, vertex: &Vertex<'_>, scratch: &mut Scratch) -> Rgb {
@@ -307,20 +335,11 @@ impl<'a> PhotonMapper<'a> {
             }
             if !bsdf.is_dirac() {
                 let there = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
-                if self.config.direct == DirectSource::Rays {
-                    found += throughput * self.direct(&there, sampler);
-                }
-                if !sharp.is_black() {
-                    let caustic = self.look_up(&self.maps.caustic, &there, self.caustic_bandwidth, scratch).1;
-                    found += throughput * sharp * caustic;
-                }
-                if distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES {
-                    let bandwidth = Bandwidth::Fixed { radius: self.global_radius };
-                    let (direct, other) = self.look_up(&self.maps.global, &there, bandwidth, scratch);
-                    found += throughput * (direct + other);
+                let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
+                found += throughput * self.light_at(&there, far, sharp, sampler, scratch);
+                if far {
                     break;
                 }
-                found += throughput * self.afterglow(&there, scratch);
                 near += 1;
                 distance = 0.0;
             }
