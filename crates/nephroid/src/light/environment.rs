@@ -32,7 +32,9 @@ impl ConstantSky {
 
 /// Radiance from an equirectangular image, sampled by its brightness.
 ///
-/// Row 0 is local +y, and a local direction has u = atan2(x, −z) / 2π.
+/// Row 0 is local +y, and a local direction has u = atan2(x, −z) / 2π. As Mitsuba has it, the
+/// colours of the first and the last row are those at the poles, while columns have theirs at
+/// their middles.
 #[derive(Clone, Debug)]
 pub(crate) struct EnvironmentMap {
     image: Handle<Image>,
@@ -100,7 +102,7 @@ impl EnvironmentMap {
 
     fn texture(&self, textures: &Textures, uv: Vec2) -> Rgb {
         let image = &textures.images[self.image];
-        let (x, y) = (uv.x * image.width as f32 - 0.5, uv.y * image.height as f32 - 0.5);
+        let (x, y) = (uv.x * image.width as f32 - 0.5, uv.y * (image.height - 1) as f32);
         let (i, j) = (x.floor(), y.floor());
         let (a, b) = (x - i, y - j);
         let (i, j) = (i as i64, j as i64);
@@ -156,4 +158,32 @@ fn texel(image: &Image, x: i64, y: i64) -> Rgb {
 
 fn incident(wi: Vec3, radiance: Rgb, pdf_solid_angle: f32) -> Incident {
     Incident { wi, radiance, pdf_solid_angle, dirac: false, source: Source::Infinity }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_lie_from_pole_to_pole_and_columns_have_their_middles() {
+        // Values 0 … 11: four columns, three rows.
+        let pixels = (0..12).map(|i| Rgb::splat(i as f32)).collect();
+        let mut textures = Textures::default();
+        let image = textures.images.push(Image { width: 4, height: 3, pixels });
+        let target = Target { center: Vec3::ZERO, radius: 1.0 };
+        let map = EnvironmentMap::new(&textures, image, 1.0, &Transform::IDENTITY, target).unwrap();
+        let value = |direction: Vec3| map.radiance(&textures, direction.normalize()).g;
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-4, "{a} instead of {b}");
+        // The middle of column 0 lies 45° from −z towards +x.
+        let (s, c) = sin_cos(PI / 4.0);
+        let ahead = Vec3::new(s, 0.0, -c);
+        near(value(ahead), 4.0);
+        near(value(ahead + Vec3::Y), 2.0);
+        near(value(ahead - Vec3::Y), 6.0);
+        near(value(Vec3::Y + 1e-6 * ahead), 0.0);
+        near(value(-Vec3::Y + 1e-6 * ahead), 8.0);
+        // Between columns 0 and 1, and between the last and the first.
+        near(value(Vec3::X), 4.5);
+        near(value(-Vec3::Z), 5.5);
+    }
 }
