@@ -19,6 +19,9 @@ const MIN_NORMAL_COSINE: f32 = 0.9;
 /// out surfaces that run in parallel, such as the other step of a stair.
 const MAX_THICKNESS: f32 = 0.25;
 
+/// Photons that must be found, if k are not, for the last of them to set the radius.
+const ENOUGH: usize = 8;
+
 /// Where and for what to gather photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Query {
@@ -76,9 +79,12 @@ pub struct Gathered {
 ///
 /// **The k-th photon** sets the radius and is not counted: (k − 1)/(πr²) has the expectation of the
 /// density where that is uniform, k/(πr²) exceeds it by k/(k − 1) (García, Ureña, Revelles and Sbert
-/// 2011, *Unreported Intrinsic Bias…*, CGF 30). With fewer than k within the largest radius, that is
-/// the radius and all count, and both rules together have the right expectation still. If the k-th
-/// coincides with the query, its distance says nothing and the largest radius is taken, too.
+/// 2011, *Unreported Intrinsic Bias…*, CGF 30). With fewer than k within the largest radius R, the last
+/// of the n found takes its place: given n, r² / R² has the density n xⁿ⁻¹ on [0, 1], hence the mean of
+/// (n − 1)/(πr²) is n/(πR²), which is right. On a small ball, where the photons that count end with
+/// the cap of about the query's normal, r ends there, too, and the estimate stays right; with R it
+/// would be dark. Only a handful takes R and counts in full, as the variance of 1/r² is large then.
+/// So it does if the last coincides with the query, and its distance says nothing.
 ///
 /// Nothing counts within a radius that is not positive and finite.
 ///
@@ -99,11 +105,15 @@ pub fn gather<I: PhotonIndex>(
     };
     let measure = |place, dist_sq| distance_sq(map, query, place, dist_sq);
     map.index().nearest(query.position, max_radius * max_radius, k, measure, scratch);
-    let radius = scratch.get(k - 1).map_or(max_radius, |kth| kth.dist_sq.sqrt());
+    let found = scratch.len();
+    if found < k.min(ENOUGH) {
+        return gather_within(map, query, kernel, max_radius, add);
+    }
+    let count = found.min(k) - 1;
+    let radius = scratch.get(count).map_or(max_radius, |last| last.dist_sq.sqrt());
     let Some(spread) = Spread::new(kernel, radius) else {
         return gather_within(map, query, kernel, max_radius, add);
     };
-    let count = scratch.len().min(k - 1);
     for neighbor in scratch.iter().take(count) {
         add(&map.photon(neighbor.place), spread.weight(neighbor.dist_sq));
     }

@@ -170,6 +170,33 @@ fn a_sphere_in_uniform_light_looks_uniform_at_large_radii() {
     assert!(4.0 * deviation < 0.015 && (mean - 1.0).abs() < 0.015, "{mean} ± {deviation}");
 }
 
+/// More neighbours than the part of the sphere has that looks the query's way: the search runs into
+/// the end of the cap of 26°, and the radius must be the cap's and not the largest allowed, which
+/// would make the sphere eight times too dark. Photons spread over a cap that ends at r count n − 1 in
+/// πr² but for what the chord of the last one falls short of the cap: 1 % is allowed for that and the
+/// noise, whose deviation is 0.2 % for 20 maps of 2000 photons and 300 queries.
+#[test]
+fn a_small_sphere_with_fewer_photons_than_neighbours_is_not_dark() {
+    let mut rng = Rng::new(14);
+    let (mut sum, mut n) = (0.0, 0.0);
+    for _ in 0..20 {
+        let photons: Vec<_> = (0..2000)
+            .map(|_| warp::square_to_sphere(Vec2::new(rng.next(), rng.next())))
+            .map(|p| photon_at(p, p))
+            .collect();
+        let map = PhotonMap::build(Photons::new(2000, photons));
+        for _ in 0..300 {
+            let p = warp::square_to_sphere(Vec2::new(rng.next(), rng.next()));
+            let query = Query { position: p, normal: p, max_photon_depth: None };
+            let bandwidth = Bandwidth::Nearest { k: 500, max_radius: 1.3 };
+            sum += f64::from(irradiance(&map, &query, Kernel::Box, bandwidth).0);
+            n += 1.0;
+        }
+    }
+    let mean = sum / n * 4.0 * std::f64::consts::PI;
+    assert!((mean - 1.0).abs() < 0.01, "{mean}");
+}
+
 #[test]
 fn photons_of_other_surfaces_neither_count_nor_shrink_the_radius() {
     let mut rng = Rng::new(30);

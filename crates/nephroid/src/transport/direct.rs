@@ -11,7 +11,7 @@ use crate::world::{World, leave};
 /// Which lights next event estimation asks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirectLights {
-    /// One, by roulette with probability ∝ power.
+    /// One, by roulette: half by power, half evenly.
     #[default]
     One,
     /// Every one.
@@ -54,7 +54,7 @@ pub(crate) fn sample_lights(
     partner: Partner,
     sampler: &mut Sampler,
 ) -> Rgb {
-    let Some(table) = world.lights_by_power() else { return Rgb::BLACK };
+    let Some(table) = world.lights_for_direct() else { return Rgb::BLACK };
     match lights {
         DirectLights::One => {
             let (light, probability, _) = table.sample(sampler.next_1d());
@@ -149,7 +149,7 @@ pub(crate) fn sky_by_bsdf(world: &World, direction: Vec3, pdf_bsdf: f32, lights:
 }
 
 fn choice(world: &World, light: usize, lights: DirectLights) -> f32 {
-    match (lights, world.lights_by_power()) {
+    match (lights, world.lights_for_direct()) {
         (DirectLights::One, Some(table)) => table.pmf(light),
         _ => 1.0,
     }

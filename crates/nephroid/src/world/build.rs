@@ -40,6 +40,7 @@ impl World {
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         let (emitters, emitter_of_shape) = emitters(&scene, &pieces, Target { center, radius });
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
+        let for_direct = by_power.as_ref().and_then(for_direct);
         let invisible =
             scene.shapes.iter().map(|s| matches!(scene.materials[s.material], Material::Null)).collect();
         Ok(Self {
@@ -52,6 +53,7 @@ impl World {
             invisible,
             emitters,
             by_power,
+            for_direct,
             emitter_of_shape,
             camera,
             bounds,
@@ -137,4 +139,13 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
         }
     };
     Some(Emitter { name: light.name.clone(), kind, power })
+}
+
+/// Half by power, half evenly among the lights that have any. A sky's power is what reaches the bounds
+/// of the scene, of which one place may see little, and power alone would all but never ask the lamp
+/// beside it.
+fn for_direct(by_power: &Discrete) -> Option<Discrete> {
+    let powers: Vec<f64> = (0..by_power.len()).map(|i| f64::from(by_power.pmf(i))).collect();
+    let lit = powers.iter().filter(|p| **p > 0.0).count() as f64;
+    Discrete::new(powers.iter().map(|&p| if p > 0.0 { 0.5 * p + 0.5 / lit } else { 0.0 }))
 }

@@ -31,6 +31,8 @@ pub struct World {
     emitters: Vec<Emitter>,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
+    /// Emitters as next event estimation asks them.
+    for_direct: Option<Discrete>,
     /// The emitter each shape is, if it is one.
     emitter_of_shape: Vec<Option<u32>>,
     camera: CameraRays,
@@ -84,6 +86,10 @@ impl World {
 
     pub(crate) fn lights_by_power(&self) -> Option<&Discrete> {
         self.by_power.as_ref()
+    }
+
+    pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
+        self.for_direct.as_ref()
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {
