@@ -19,8 +19,9 @@ const MIN_NORMAL_COSINE: f32 = 0.9;
 /// out surfaces that run in parallel, such as the other step of a stair.
 const MAX_THICKNESS: f32 = 0.25;
 
-/// Photons that must be found, if k are not, for the last of them to set the radius.
-const ENOUGH: usize = 8;
+/// Photons that must be found, if k are not, for the last of them to set the radius: the fewest for
+/// which the variance of 1/r² is finite.
+const ENOUGH: usize = 3;
 
 /// Where and for what to gather photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +84,7 @@ pub struct Gathered {
 /// of the n found takes its place: given n, r² / R² has the density n xⁿ⁻¹ on [0, 1], hence the mean of
 /// (n − 1)/(πr²) is n/(πR²), which is right. On a small ball, where the photons that count end with
 /// the cap of about the query's normal, r ends there, too, and the estimate stays right; with R it
-/// would be dark. Only a handful takes R and counts in full, as the variance of 1/r² is large then.
+/// would be dark. One or two photons take R and count in full.
 /// So it does if the last coincides with the query, and its distance says nothing.
 ///
 /// Nothing counts within a radius that is not positive and finite.
