@@ -219,3 +219,18 @@ fn photons_from_the_sky_light_a_white_ball_to_one() {
         room_test(&format!("radius {radius:?}"), &world, &Method::PhotonMapper(config), 1.0);
     }
 }
+
+/// Nothing but an infinite plane has no bounds to aim a sky at; it is lit by it all the same, and
+/// reflects its albedo.
+#[test]
+fn a_lone_infinite_plane_under_a_sky_reflects_its_albedo() {
+    for (name, method) in methods() {
+        let mut b = seen_from(Vec3::new(0.0, 0.0, 1.0), Vec3::ZERO, 20.0, 8);
+        let grey = b.diffuse(0.5);
+        b.shape(Geometry::Plane, Transform::IDENTITY, grey);
+        let world = b.build();
+        let mean: MeanTest =
+            (0..16).map(|seed| f64::from(render(&world, method.clone(), 64, seed).mean().g)).collect();
+        judge(name, &mean.against(0.5));
+    }
+}

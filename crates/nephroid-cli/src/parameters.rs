@@ -150,7 +150,7 @@ pub const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "final-gather",
         value: "RAYS",
-        help: "Gather indirect light by rays: on, off, or a number of rays for each camera sample",
+        help: "Gather indirect light by rays: on, off, or a number of rays for each camera sample that reads the maps",
         set: |d, v| final_gather(v).map(|g| d.config.final_gather = g),
         get: |c| match c.final_gather {
             FinalGather::Off => json!("off"),

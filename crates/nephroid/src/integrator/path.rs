@@ -45,7 +45,7 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
                     sky_by_bsdf(world, ray.direction, pdf_solid_angle, config.direct_lights)
                 }
             };
-            book(&mut out, throughput * sky, diffuse);
+            book(&mut out, throughput * sky, diffuse, last);
             break;
         };
         let wo = -ray.direction;
@@ -57,7 +57,7 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
                     power_heuristic(pdf_solid_angle, pdf)
                 }
             };
-            book(&mut out, throughput * emitted * weight, diffuse);
+            book(&mut out, throughput * emitted * weight, diffuse, last);
         }
         let bsdf = world.bsdf(&hit, wo);
         if bsdf.is_null() {
@@ -70,7 +70,11 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
                 let (lights, sampler) = (config.direct_lights, &mut sample.sampler);
                 let direct =
                     sample_lights(world, &hit.point, &bsdf, wo, lights, Partner::BsdfSample, sampler);
-                book(&mut out, throughput * direct, diffuse);
+                if diffuse == 1 {
+                    out.direct += throughput * direct;
+                } else {
+                    out.global += throughput * direct;
+                }
             }
         }
         let s = &mut sample.sampler;
@@ -93,11 +97,13 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
     out
 }
 
-/// Books light by how many surfaces that are not specular it met; caustics count as indirect.
-fn book(out: &mut Components, light: Rgb, diffuse: u32) {
-    match diffuse {
-        0 => out.emitted += light,
-        1 => out.direct += light,
+/// Books light by how many surfaces that are not specular it met, and whether a specular one after the
+/// only one of them makes it a caustic.
+fn book(out: &mut Components, light: Rgb, diffuse: u32, last: Last) {
+    match (diffuse, last) {
+        (0, _) => out.emitted += light,
+        (1, Last::Certain) => out.caustic += light,
+        (1, Last::Sampled { .. }) => out.direct += light,
         _ => out.global += light,
     }
 }

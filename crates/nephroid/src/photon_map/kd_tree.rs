@@ -67,6 +67,10 @@ struct Entry {
     number: u32,
 }
 
+/// A leaf counts as at most so many times the area of the middle one. On an infinite plane the few
+/// photons that land a hundred heights away would otherwise stand for nearly all of the area.
+const FARTHEST_LEAF: f64 = 64.0;
+
 impl KdTree {
     /// The area the points cover if they lie on surfaces, estimated from the leaves.
     ///
@@ -309,13 +313,21 @@ fn arrange(entries: &mut [Entry], slots: usize) {
 
 /// See [`KdTree::covered_area`].
 fn covered_area(boxes: &[Bounds], len: usize) -> f32 {
-    let areas = boxes.iter().enumerate().map(|(i, b)| {
-        let n = (len - i * LEAF).min(LEAF) as f64;
-        let inner = (n - 1.0).max(1.0);
-        let e = b.extent().as_dvec3();
-        (e * DVec3::new(e.y, e.z, e.x)).length() * n * (n + 1.0) / (inner * inner)
-    });
-    areas.sum::<f64>() as f32
+    let areas: Vec<f64> = boxes
+        .iter()
+        .enumerate()
+        .map(|(i, b)| {
+            let n = (len - i * LEAF).min(LEAF) as f64;
+            let inner = (n - 1.0).max(1.0);
+            let e = b.extent().as_dvec3();
+            (e * DVec3::new(e.y, e.z, e.x)).length() * n * (n + 1.0) / (inner * inner)
+        })
+        .collect();
+    let mut sorted = areas.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let Some(median) = sorted.get(sorted.len() / 2) else { return 0.0 };
+    let most = if *median > 0.0 { median * FARTHEST_LEAF } else { f64::INFINITY };
+    areas.iter().map(|a| a.min(most)).sum::<f64>() as f32
 }
 
 /// The nodes over the leaves' boxes, from the lowest level to the top.

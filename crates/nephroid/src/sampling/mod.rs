@@ -18,6 +18,25 @@ pub fn power_heuristic(pdf: f32, other_pdf: f32) -> f32 {
     if pdf.is_infinite() {
         return 1.0;
     }
-    let (a, b) = (pdf * pdf, other_pdf * other_pdf);
-    if a + b > 0.0 { a / (a + b) } else { 0.0 }
+    if pdf <= 0.0 {
+        return 0.0;
+    }
+    // As a ratio, since the square of a lamp's density far away may be beyond single precision.
+    let ratio = other_pdf / pdf;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weights_of_two_techniques_add_up_to_one_at_any_scale() {
+        for (a, b) in [(1.0, 3.0), (1e-30, 2e-30), (3e19, 0.3), (1e38, 1e38), (2.0, 0.0)] {
+            let sum = power_heuristic(a, b) + power_heuristic(b, a);
+            assert!((sum - 1.0).abs() < 1e-6, "{a} and {b}: {sum}");
+        }
+        assert_eq!(power_heuristic(1.0, 3.0), 0.1);
+        assert_eq!((power_heuristic(0.0, 0.0), power_heuristic(f32::INFINITY, 1.0)), (0.0, 1.0));
+    }
 }

@@ -191,9 +191,27 @@ fn check_emission(
     problems: &mut Problems,
 ) {
     if !scene.textures.list.contains(emission) {
-        problems.add(subject, "the texture of its emission does not exist");
-    } else if let Texture::Constant(value) = scene.textures.list[emission] {
-        check_light_value(value, "radiance", subject, problems);
+        problems.add(subject, "the texture of its light does not exist");
+        return;
+    }
+    match &scene.textures.list[emission] {
+        Texture::Constant(value) => check_light_value(*value, "radiance", subject, problems),
+        Texture::Bitmap(bitmap) => {
+            let images = &scene.textures.images;
+            if images.contains(bitmap.image)
+                && images[bitmap.image].pixels.iter().any(|p| p.min_channel() < 0.0)
+            {
+                problems.add(subject, "a pixel of its light's texture is negative: light cannot be");
+            }
+        }
+        Texture::Checkerboard(board) => {
+            for child in [board.color0, board.color1] {
+                // Only what comes before: a cycle is a problem of the texture's own.
+                if child.index() < emission.index() {
+                    check_emission(scene, child, subject, problems);
+                }
+            }
+        }
     }
 }
 
@@ -207,6 +225,7 @@ fn check_lights(scene: &Scene, problems: &mut Problems) {
             }
             LightKind::Spot { to_world, intensity, cutoff_deg, beam_width_deg, texture } => {
                 check_transform(to_world, subject, problems);
+                check_rigid(to_world, subject, problems);
                 check_light_value(*intensity, "intensity", subject, problems);
                 if !(*cutoff_deg > 0.0 && *cutoff_deg < 90.0) {
                     problems.add(
@@ -217,8 +236,8 @@ fn check_lights(scene: &Scene, problems: &mut Problems) {
                 if !(*beam_width_deg >= 0.0 && beam_width_deg <= cutoff_deg) {
                     problems.add(subject, "the beam width must lie between 0 and the cutoff angle");
                 }
-                if texture.is_some_and(|t| !scene.textures.list.contains(t)) {
-                    problems.add(subject, "its texture does not exist");
+                if let Some(texture) = texture {
+                    check_emission(scene, *texture, subject, problems);
                 }
             }
             LightKind::Directional { direction, irradiance } => {
@@ -230,6 +249,7 @@ fn check_lights(scene: &Scene, problems: &mut Problems) {
             LightKind::Constant { radiance } => check_light_value(*radiance, "radiance", subject, problems),
             LightKind::Environment { image, scale, to_world } => {
                 check_transform(to_world, subject, problems);
+                check_rigid(to_world, subject, problems);
                 if !scene.textures.images.contains(*image) {
                     problems.add(subject, "its image does not exist");
                 } else if scene.textures.images[*image].pixels.iter().any(|p| p.min_channel() < 0.0) {
@@ -248,6 +268,15 @@ fn check_transform(transform: &Transform, subject: Subject, problems: &mut Probl
         problems.add(
             subject,
             "`to_world` is singular or not finite: no axis may be scaled to zero, and every number must be finite",
+        );
+    }
+}
+
+fn check_rigid(transform: &Transform, subject: Subject, problems: &mut Problems) {
+    if transform.is_invertible() && transform.uniform_scale().is_none() {
+        problems.add(
+            subject,
+            "its `to_world` may turn, mirror and scale alike on each axis, but not stretch or shear",
         );
     }
 }
@@ -271,5 +300,78 @@ fn positive(value: f32, name: &str, subject: Subject, problems: &mut Problems) {
 fn finite(is_finite: bool, name: &str, subject: Subject, problems: &mut Problems) {
     if !is_finite {
         problems.add(subject, format!("its {name} must be finite"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, FovAxis};
+    use crate::film::FilmSettings;
+    use crate::handle::Arena;
+    use crate::light::Light;
+    use crate::math::{Affine2, DVec3, Vec2};
+    use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
+
+    fn empty() -> Scene {
+        let projection = Projection::Perspective {
+            fov_deg: 40.0,
+            fov_axis: FovAxis::X,
+            principal_point_offset: Vec2::ZERO,
+        };
+        Scene {
+            camera: Camera { to_world: Transform::IDENTITY, projection },
+            film: FilmSettings { width: 4, height: 4, crop: None, filter: Filter::Box },
+            textures: Textures::default(),
+            materials: Arena::default(),
+            meshes: Arena::default(),
+            shapes: Vec::new(),
+            lights: Vec::new(),
+        }
+    }
+
+    fn messages(scene: &Scene) -> Vec<String> {
+        check(scene).into_iter().map(|problem| problem.message).collect()
+    }
+
+    #[test]
+    fn a_light_with_a_negative_pixel_or_a_sheared_frame_is_refused() {
+        let mut scene = empty();
+        let image = scene.textures.images.push(Image::filled(1, 1, Rgb::splat(-1.0)));
+        let bitmap =
+            Bitmap { image, filter: BitmapFilter::Nearest, wrap: Wrap::Repeat, to_uv: Affine2::IDENTITY };
+        let texture = scene.textures.push(Texture::Bitmap(bitmap));
+        let kind = LightKind::Spot {
+            to_world: Transform::scale(DVec3::new(1.0, 2.0, 1.0)),
+            intensity: Rgb::WHITE,
+            cutoff_deg: 20.0,
+            beam_width_deg: 15.0,
+            texture: Some(texture),
+        };
+        scene.lights.push(Light { name: "spot".into(), kind });
+        assert_eq!(
+            messages(&scene),
+            [
+                "its `to_world` may turn, mirror and scale alike on each axis, but not stretch or shear",
+                "a pixel of its light's texture is negative: light cannot be",
+            ]
+        );
+    }
+
+    #[test]
+    fn fields_of_view_and_crops_outside_the_picture_are_refused() {
+        let mut scene = empty();
+        assert!(messages(&scene).is_empty());
+        scene.film.crop = Some(crate::film::Crop { x: 3, y: 0, width: 2, height: 1 });
+        if let Projection::Perspective { fov_deg, .. } = &mut scene.camera.projection {
+            *fov_deg = 180.0;
+        }
+        assert_eq!(
+            messages(&scene),
+            [
+                "a field of view of 180 degrees: write one between 0 and 180",
+                "the crop window is empty or reaches beyond the picture",
+            ]
+        );
     }
 }

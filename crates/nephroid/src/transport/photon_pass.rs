@@ -1,5 +1,7 @@
 //! The photon pass: how many paths to emit, and emitting them.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::ledger::Ledger;
@@ -11,6 +13,10 @@ use crate::world::World;
 
 /// Paths that are traced as one piece of work. Their photons are joined in the order of the paths.
 const CHUNK: u64 = 4096;
+
+/// Pieces of work between two joinings: enough for any number of threads, and few enough that books
+/// of a thousand lights take little memory.
+const BATCH: usize = 512;
 
 /// The pilot goes on until it has counted so many photons for each map, which tells their number per
 /// path to 3 %…
@@ -91,6 +97,7 @@ impl PhotonPlan {
         }
         let caustics = !too_short && world.has_dirac_surfaces();
         if let Some(paths) = targets.emit {
+            let paths = round_up(paths, world, settings);
             let plan = |wanted| MapPlan { paths: if wanted { paths } else { 0 }, ..MapPlan::default() };
             return Self { global: plan(targets.global > 0), caustic: plan(caustics && targets.caustic > 0) };
         }
@@ -98,7 +105,11 @@ impl PhotonPlan {
         let plan = |target: u64, counted: u64| {
             let most = target.saturating_mul(targets.emit_max);
             let per_path = counted as f64 / paths as f64;
-            let needed = if counted > 0 { (target as f64 / per_path).ceil() as u64 } else { u64::MAX };
+            let needed = match (target, counted) {
+                (0, _) => 0,
+                (_, 0) => u64::MAX,
+                _ => (target as f64 / per_path).ceil() as u64,
+            };
             let emitted = round_up(needed.min(most), world, settings);
             MapPlan {
                 paths: emitted,
@@ -205,40 +216,55 @@ fn emit(
     work: &Work<'_>,
     keep: impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync,
 ) -> Option<([Photons; 2], Ledger)> {
-    let chunks: Vec<([Vec<Photon>; 2], Ledger)> = (0..paths.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-            let mut stored: [Vec<Photon>; 2] = Default::default();
-            let mut ledger = Ledger::new(world.light_count());
-            if work.cancelled() {
-                return (stored, ledger);
-            }
-            ledger.paths = range.end - range.start;
-            for path in range {
-                let mut sampler = Sampler::new(Sequence::Independent, key, path);
-                walk(world, settings, path, &mut sampler, &mut ledger.lights, |photon, kind| {
-                    let (list, next) = keep(kind);
-                    if let Some(list) = list {
-                        stored[list].push(photon);
-                    }
-                    next
-                });
-            }
-            work.advance(ledger.paths);
-            (stored, ledger)
-        })
-        .collect();
-    if work.cancelled() {
-        return None;
-    }
     let mut photons: [Vec<Photon>; 2] = Default::default();
     let mut ledger = Ledger::new(world.light_count());
-    for (stored, books) in chunks {
-        for (all, mut more) in photons.iter_mut().zip(stored) {
-            all.append(&mut more);
+    let chunks = paths.div_ceil(CHUNK);
+    for first in (0..chunks).step_by(BATCH) {
+        let traced: Vec<_> = (first..(first + BATCH as u64).min(chunks))
+            .into_par_iter()
+            .map(|chunk| {
+                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
+                trace(world, settings, range, key, work, &keep)
+            })
+            .collect();
+        for (stored, books) in traced {
+            for (all, mut more) in photons.iter_mut().zip(stored) {
+                all.append(&mut more);
+            }
+            ledger.append(&books);
         }
-        ledger.append(&books);
+        if work.cancelled() {
+            return None;
+        }
     }
     Some((photons.map(|list| Photons::new(paths, list)), ledger))
+}
+
+/// Traces a range of paths; none if the observer cancelled.
+fn trace(
+    world: &World,
+    settings: &WalkSettings,
+    paths: Range<u64>,
+    key: Key,
+    work: &Work<'_>,
+    keep: &(impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync),
+) -> ([Vec<Photon>; 2], Ledger) {
+    let mut stored: [Vec<Photon>; 2] = Default::default();
+    let mut ledger = Ledger::new(world.light_count());
+    if work.cancelled() {
+        return (stored, ledger);
+    }
+    ledger.paths = paths.end - paths.start;
+    for path in paths {
+        let mut sampler = Sampler::new(Sequence::Independent, key, path);
+        walk(world, settings, path, &mut sampler, &mut ledger.lights, |photon, kind| {
+            let (list, next) = keep(kind);
+            if let Some(list) = list {
+                stored[list].push(photon);
+            }
+            next
+        });
+    }
+    work.advance(ledger.paths);
+    (stored, ledger)
 }

@@ -38,9 +38,11 @@ impl World {
 
         let camera = CameraRays::new(&scene.camera, &scene.film);
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
+        // Infinite planes alone have no bounds; any size will do for light that only comes straight.
+        let radius = if radius > 0.0 { radius } else { 1.0 };
         let (emitters, emitter_of_shape) = emitters(&scene, &pieces, Target { center, radius });
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
-        let for_direct = by_power.as_ref().and_then(for_direct);
+        let for_direct = for_direct(&emitters);
         let invisible =
             scene.shapes.iter().map(|s| matches!(scene.materials[s.material], Material::Null)).collect();
         Ok(Self {
@@ -71,7 +73,8 @@ fn pieces(scene: &Scene) -> Result<(Vec<Mesh>, Vec<Vec<Primitive>>), SceneErrors
         if let Geometry::Mesh(mesh) = shape.geometry {
             meshes.push(placed(&scene.meshes[mesh], &shape.to_world));
         }
-        pieces.push(Primitive::of_shape(shape, &meshes, index).unwrap_or_else(|| {
+        let own = Primitive::of_shape(shape, &meshes, index).filter(|own| own.iter().all(is_finite));
+        pieces.push(own.unwrap_or_else(|| {
             problems.push(SceneError {
                 subject: Subject::Shape(i),
                 message: "nothing of it is left in single precision: it is too small, too thin or too large"
@@ -81,6 +84,12 @@ fn pieces(scene: &Scene) -> Result<(Vec<Mesh>, Vec<Vec<Primitive>>), SceneErrors
         }));
     }
     if problems.is_empty() { Ok((meshes, pieces)) } else { Err(SceneErrors(problems)) }
+}
+
+/// Whether single precision holds where it lies.
+fn is_finite(piece: &Primitive) -> bool {
+    let bounds = piece.bounds();
+    bounds.is_empty() || (bounds.extent().is_finite() && bounds.area().is_finite())
 }
 
 /// A mesh in world space, still counter-clockwise where the transform mirrors.
@@ -144,8 +153,8 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
 /// Half by power, half evenly among the lights that have any. A sky's power is what reaches the bounds
 /// of the scene, of which one place may see little, and power alone would all but never ask the lamp
 /// beside it.
-fn for_direct(by_power: &Discrete) -> Option<Discrete> {
-    let powers: Vec<f64> = (0..by_power.len()).map(|i| f64::from(by_power.pmf(i))).collect();
-    let lit = powers.iter().filter(|p| **p > 0.0).count() as f64;
-    Discrete::new(powers.iter().map(|&p| if p > 0.0 { 0.5 * p + 0.5 / lit } else { 0.0 }))
+fn for_direct(emitters: &[Emitter]) -> Option<Discrete> {
+    let powers: Vec<f64> = emitters.iter().map(|e| f64::from(e.power.mean())).collect();
+    let (total, lit) = (powers.iter().sum::<f64>(), powers.iter().filter(|p| **p > 0.0).count() as f64);
+    Discrete::new(powers.iter().map(|&p| if p > 0.0 { 0.5 * p / total + 0.5 / lit } else { 0.0 }))
 }

@@ -13,7 +13,8 @@ pub struct PhotonMapperConfig {
     pub emit: Option<u64>,
     /// At most this multiple of a wanted number is emitted, and the map is thinner then.
     pub emit_max: u64,
-    /// Photons of an estimate, k: the radius is where the k-th lies, and the k − 1 within count.
+    /// Photons of an estimate, k: the radius is where the k-th lies, or the last found if there are
+    /// fewer, and those within count.
     pub neighbours: u32,
     /// A fixed radius in scene units instead of k neighbours.
     pub radius: Option<f32>,
@@ -79,11 +80,11 @@ pub enum DirectSource {
 pub enum FinalGather {
     /// The maps on the spot.
     Off,
-    /// So many rays that a pixel has 64, between 1 and 16 a camera sample; off where direct light
+    /// So many rays that a pixel has 64, between 1 and 16 a camera sample that reads the maps; off where direct light
     /// comes from the map or the picture shows one map.
     #[default]
     Auto,
-    /// So many rays a camera sample.
+    /// So many rays for each camera sample that reads the maps.
     Rays(u32),
 }
 
@@ -124,12 +125,9 @@ impl PhotonMapperConfig {
             || (self.show == Show::Direct && self.direct == DirectSource::Map);
         PhotonTargets {
             global: if shows_global { self.photons } else { 0 },
-            // Gather rays leave the light of caustics on other surfaces to photons of the same paths.
-            caustic: if self.shows_caustics() || (shows_global && self.final_gather != FinalGather::Off) {
-                self.caustic_photons
-            } else {
-                0
-            },
+            // Gather rays leave the light of caustics on other surfaces to photons of the same paths,
+            // and rays of glossy lobes see caustics.
+            caustic: if self.shows_caustics() || shows_global { self.caustic_photons } else { 0 },
             emit: self.emit,
             emit_max: self.emit_max,
             store_direct: self.direct == DirectSource::Map,

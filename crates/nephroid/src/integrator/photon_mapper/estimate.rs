@@ -13,7 +13,7 @@ use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
 use crate::world::{World, leave};
 
-/// Dirac surfaces along a camera path at which both lobes are followed, before one is chosen by
+/// Surfaces that both reflect and refract, along a camera path, at which both lobes are followed, before one is chosen by
 /// chance: the reflection in a glass ball then shows no noise, at up to four times the rays.
 const SPLITS: u32 = 2;
 
@@ -186,8 +186,13 @@ impl<'a> PhotonMapper<'a> {
             // What the map would blur is sampled below.
             let bsdf = if gathers { *vertex.bsdf } else { vertex.bsdf.diffuse_part() };
             let smooth = Vertex { bsdf: &bsdf, ..*vertex };
-            let (direct, global) = self.look_up(&self.maps.global, &smooth, self.global_bandwidth, scratch);
+            let (mut direct, global) =
+                self.look_up(&self.maps.global, &smooth, self.global_bandwidth, scratch);
             if shows_direct {
+                // No ray will find a point light: its highlight is the photons', however blurred.
+                if !gathers && vertex.bsdf.has_glossy_lobe() {
+                    direct = self.look_up(&self.maps.global, vertex, self.global_bandwidth, scratch).0;
+                }
                 out.direct += throughput * direct;
             }
             if shows_global && !gathers {
@@ -347,7 +352,9 @@ impl<'a> PhotonMapper<'a> {
                 break;
             };
             if !bsdf.is_dirac() {
-                sharp = glossy_share(&bsdf, wo, next.direction);
+                // Where nothing is gathered there is no afterglow, and the ray brings all caustics.
+                let gathers = self.gather_rays.is_some();
+                sharp = if gathers { glossy_share(&bsdf, wo, next.direction) } else { Rgb::WHITE };
             }
             (ray, throughput) = (next, carried);
             depth += 1;

@@ -1,5 +1,6 @@
 //! Two-pass photon mapping (Jensen 1996, 2001; the report's §2 in its corrected form): photons from
-//! the lights into a global and a caustic map, then camera paths that estimate radiance from them.
+//! the lights into a global and a caustic map
+//! (and one of the light of caustics a bounce later), then camera paths that estimate radiance from them.
 
 mod config;
 mod estimate;
