@@ -152,7 +152,7 @@ fn unknown_names() {
     check("<shape/>", r#"s.xml:2:1: error: <shape> lacks the attribute "type""#);
     check(
         r#"<shape type="sphere"><float name="raduis" value="2"/></shape>"#,
-        r#"s.xml:2:50: error: <shape type="sphere"> has no property "raduis"; did you mean "radius"?"#,
+        r#"s.xml:2:35: error: <shape type="sphere"> has no property "raduis"; did you mean "radius"?"#,
     );
     check(
         r#"<shape type="sphere"><float name="radius" vlaue="2"/></shape>"#,
@@ -165,7 +165,7 @@ s.xml:2:22: error: <float> lacks the attribute "value""#,
     );
     check(
         r#"<shape type="sphere"><float name="nothing_like_it" value="2"/></shape>"#,
-        r#"s.xml:2:59: error: <shape type="sphere"> has no property "nothing_like_it"; it has center, radius, to_world, flip_normals, silhouette_sampling_weight"#,
+        r#"s.xml:2:35: error: <shape type="sphere"> has no property "nothing_like_it"; it has center, radius, to_world, flip_normals, silhouette_sampling_weight"#,
     );
     check(
         r#"<shape type="sphere"><float name="radius" value="1"/><float name="radius" value="2"/></shape>"#,
@@ -547,7 +547,7 @@ fn broken_sensors_and_films() {
     check_whole(
         r#"<scene version="3.0.0"><sensor type="perspective">
 <float name="fieldofview" value="40"/></sensor></scene>"#,
-        r#"s.xml:2:34: error: <sensor type="perspective"> has no property "fieldofview"; it has fov_axis, focal_length, fov, principal_point_offset_x, principal_point_offset_y, to_world, near_clip, far_clip, focus_distance, shutter_open, shutter_close, srf"#,
+        r#"s.xml:2:14: error: <sensor type="perspective"> has no property "fieldofview"; it has fov_axis, focal_length, fov, principal_point_offset_x, principal_point_offset_y, to_world, near_clip, far_clip, focus_distance, shutter_open, shutter_close, srf"#,
     );
     check_whole(
         r#"<scene version="3.0.0">

@@ -250,7 +250,7 @@ impl<'t> Plugin<'t> {
                 let asked = self.asked.borrow();
                 let known = || asked.iter().copied().filter(|name| !name.is_empty());
                 let mut message = Diagnostic::error(
-                    &property.location,
+                    &property.name_location,
                     format!("{owner} has no property \"{}\"", shortened(name)),
                 )
                 .did_you_mean(name, known());

@@ -61,6 +61,8 @@ pub(super) struct Property<'t> {
     pub(super) value: Value<'t>,
     /// Of the value if it is an attribute, else of the element.
     pub(super) location: Location,
+    /// Where its name stands.
+    pub(super) name_location: Location,
     /// Whether anything asked for it.
     pub(super) used: Cell<bool>,
 }
@@ -69,7 +71,14 @@ pub(super) struct Property<'t> {
 pub(super) fn property<'t>(child: &'t Element, ids: &Ids<'t>, log: &Log) -> Option<Property<'t>> {
     let tag = child.tag.as_str();
     let is_plugin = OBJECT_TAGS.contains(&tag) || (tag == "spectrum" && child.attribute("type").is_some());
-    let new = |name, value, location| Property { name, value, location, used: Cell::new(false) };
+    let name_location = child.attribute("name").map_or(&child.location, |a| &a.location);
+    let new = |name, value, location| Property {
+        name,
+        value,
+        location,
+        name_location: name_location.clone(),
+        used: Cell::new(false),
+    };
     let name = child.value_of("name").unwrap_or_default();
     if is_plugin {
         return Some(new(name, Value::Object(child), child.location.clone()));
