@@ -97,6 +97,40 @@ pub(super) fn rejection_sphere(sampler: &mut Sampler) -> Vec3 {
     }
 }
 
+/// What a path has met so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct History {
+    specular: u32,
+    other: u32,
+    /// Whether the first surface that was not specular was lit by one that was.
+    from_caustic: bool,
+}
+
+impl History {
+    fn bounces(&self) -> u32 {
+        self.specular + self.other
+    }
+
+    /// What a photon is that lands now on a surface that is not specular.
+    fn kind(&self) -> PhotonKind {
+        match (self.specular, self.other) {
+            (0, 0) => PhotonKind::Direct,
+            (_, 0) => PhotonKind::Caustic,
+            (_, 1) if self.from_caustic => PhotonKind::Afterglow,
+            _ => PhotonKind::Global,
+        }
+    }
+
+    fn bounce(&mut self, dirac: bool) {
+        if dirac {
+            self.specular += 1;
+        } else {
+            self.from_caustic |= self.other == 0 && self.specular > 0;
+            self.other += 1;
+        }
+    }
+}
+
 /// Walks photon path `path`, showing every photon that lands on a surface with a density to
 /// estimate to `visit`, and books where the power goes with the light it came from.
 pub(super) fn walk(
@@ -114,9 +148,7 @@ pub(super) fn walk(
         return;
     }
     let mut roulette = [0.0f64; 3];
-    let (mut specular, mut other) = (0u32, 0u32);
-    // Whether the first surface that was not specular was lit by one that was.
-    let mut from_caustic = false;
+    let mut history = History::default();
     loop {
         let Some(hit) = world.intersect(&ray) else {
             book.escape(power);
@@ -128,7 +160,7 @@ pub(super) fn walk(
             ray = leave(&hit.point, ray.direction);
             continue;
         }
-        let depth = specular + other + 1;
+        let depth = history.bounces() + 1;
         if !bsdf.is_dirac() && !bsdf.is_black() {
             let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
             let photon = Photon {
@@ -139,13 +171,7 @@ pub(super) fn walk(
                 depth: u16::try_from(depth).unwrap_or(u16::MAX),
                 light: light as u32,
             };
-            let kind = match (specular, other) {
-                (0, 0) => PhotonKind::Direct,
-                (_, 0) => PhotonKind::Caustic,
-                (_, 1) if from_caustic => PhotonKind::Afterglow,
-                _ => PhotonKind::Global,
-            };
-            if visit(photon, kind) == Next::Stop {
+            if visit(photon, history.kind()) == Next::Stop {
                 book.end(power);
                 break;
             }
@@ -169,12 +195,7 @@ pub(super) fn walk(
         let survivor = scattered / q;
         take(&mut roulette, scattered - survivor);
         power = survivor;
-        if sample.dirac {
-            specular += 1;
-        } else {
-            from_caustic |= other == 0 && specular > 0;
-            other += 1;
-        }
+        history.bounce(sample.dirac);
         ray = leave(&hit.point, sample.wi);
     }
     book.roulette(roulette);
@@ -190,6 +211,26 @@ fn take(roulette: &mut [f64; 3], power: Rgb) {
 mod tests {
     use super::*;
     use crate::sampling::{Key, Sequence, Stream};
+
+    #[test]
+    fn a_path_decides_the_kind_of_its_photons() {
+        // S: Dirac bounces, D: others; the photon is the D that follows.
+        let kind = |path: &str| {
+            let mut history = History::default();
+            path.chars().for_each(|bounce| history.bounce(bounce == 'S'));
+            history.kind()
+        };
+        assert_eq!(kind(""), PhotonKind::Direct);
+        for path in ["S", "SS", "SSS"] {
+            assert_eq!(kind(path), PhotonKind::Caustic, "{path}");
+        }
+        for path in ["SD", "SSD", "SDS", "SDSS"] {
+            assert_eq!(kind(path), PhotonKind::Afterglow, "{path}");
+        }
+        for path in ["D", "DS", "DD", "SDD", "DSD", "SDSD"] {
+            assert_eq!(kind(path), PhotonKind::Global, "{path}");
+        }
+    }
 
     #[test]
     fn rejection_gives_unit_vectors_with_the_moments_of_the_uniform_sphere() {
