@@ -121,14 +121,16 @@ pub fn gather<I: PhotonIndex>(
     Gathered { radius, count: count as u32 }
 }
 
-/// How many of the photons found lie before a gap: a ring of three times the area of the disc within,
-/// and not one photon in it. There the surface ends, and what follows lies on another that happens to
-/// look the same way, such as the next ball. Eight photons of uniform light leave such a gap by chance
-/// once in 4⁸ = 65 536 times.
+/// How many of the photons found lie before a gap: a ring much larger than the disc within, and not one
+/// photon in it. There the surface ends, and what follows lies on another that happens to look the same
+/// way, such as the next ball. In uniform light i photons are followed by a disc a times as large, empty
+/// but for them, with the chance a^-i; a gap is what has a chance below one in 4⁸ = 65 536.
 fn before_a_gap(found: &NearestHeap) -> usize {
-    const SURE: usize = 8;
+    /// The ratio of the areas that makes a gap after so many photons, at most the last.
+    const GAPS: [f32; 9] = [f32::INFINITY, f32::INFINITY, f32::INFINITY, 40.4, 16.0, 9.2, 6.4, 4.9, 4.0];
     let dist_sq = |i: usize| found.get(i).map_or(0.0, |n| n.dist_sq);
-    (SURE..found.len()).find(|&i| dist_sq(i) > 4.0 * dist_sq(i - 1)).unwrap_or(found.len())
+    let ends = |&i: &usize| dist_sq(i) > GAPS[i.min(8)] * dist_sq(i - 1);
+    (ENOUGH..found.len()).find(ends).unwrap_or(found.len())
 }
 
 fn gather_within<I: PhotonIndex>(
