@@ -19,6 +19,15 @@ impl Frame {
         Self { s, t, n }
     }
 
+    /// Turned the shortest way until the normal is `n`, which must not be opposite to it.
+    #[must_use]
+    pub fn turned_to(&self, n: Vec3) -> Self {
+        let (cos, axis) = (self.n.dot(n), self.n.cross(n));
+        // Rodrigues' rotation, with the sine in the length of the axis.
+        let turn = |v: Vec3| v * cos + axis.cross(v) + axis * (axis.dot(v) / (1.0 + cos));
+        Self { s: turn(self.s), t: turn(self.t), n }
+    }
+
     /// World direction to local.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
@@ -57,6 +66,17 @@ mod tests {
             assert!((f.s.cross(f.t) - n).length() < 1e-6);
             let v = Vec3::new(0.3, -0.5, 0.8);
             assert!((f.to_local(f.to_world(v)) - v).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_turned_frame_stays_one_and_turns_no_more_than_its_normal() {
+        for i in 0..200 {
+            let n = |k: f32| warp::square_to_sphere(Vec2::new((k * 0.618_034).fract(), (k * 0.37).fract()));
+            let (a, b) = (n(i as f32), (n(i as f32) + 0.3 * n(i as f32 + 0.5)).normalize());
+            let (from, to) = (Frame::from_normal(a), Frame::from_normal(a).turned_to(b));
+            assert!(to.s.dot(to.t).abs() < 1e-6 && (to.s.cross(to.t) - b).length() < 1e-6);
+            assert!(from.s.dot(to.s) >= a.dot(b) - 1e-6, "the shortest way");
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
-use super::guide::Guide;
+use super::guide::Facing;
 use crate::color::Rgb;
 use crate::integrator::Components;
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
-use crate::photon_map::{Bandwidth, Kernel, NearestHeap, PhotonMap, Query, gather};
+use crate::photon_map::{Bandwidth, NearestHeap, PhotonMap, Query, gather};
 use crate::sampling::{Key, Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -20,9 +20,6 @@ const SPLITS: u32 = 2;
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 6;
-
-/// Photons that guide the gather rays from a surface.
-const GUIDE_PHOTONS: u32 = 48;
 
 /// Surfaces that a gather ray may go on from because they are too near to be seen through the map.
 const MAX_NEAR_SURFACES: u32 = 8;
@@ -206,7 +203,7 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            let guide = gathers.then(|| self.guide(&vertex, scratch));
+            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), scratch);
             let first = u64::from(sample.index / self.stride) * u64::from(rays);
             let found: Rgb = (first..first + u64::from(rays))
                 .map(|ray| {
@@ -287,25 +284,6 @@ impl<'a> PhotonMapper<'a> {
         (direct, other)
     }
 
-    /// Where gather rays from a surface should go.
-    fn guide(&self, vertex: &Vertex<'_>, scratch: &mut Scratch) -> Guide {
-        let normal = vertex.facing_normal();
-        let mut guide = Guide::new(normal);
-        let map = &self.maps.global;
-        if !map.is_empty() {
-            let query = Query { position: vertex.point.position, normal, max_photon_depth: None };
-            let bandwidth =
-                Bandwidth::Nearest { k: GUIDE_PHOTONS, max_radius: map.default_max_radius(GUIDE_PHOTONS) };
-            gather(map, &query, Kernel::Box, bandwidth, scratch, |photon, _| {
-                if photon.depth > 1 {
-                    guide.add(photon.wi, photon.power);
-                }
-            });
-        }
-        guide.finish();
-        guide
-    }
-
     /// One gather ray: on over specular surfaces to the first that is not, whose direct and global light
     /// it brings home, and its caustics as far as it was sent by a glossy lobe: the others come by
     /// [`Self::afterglow`]. Emission on the way is direct light's
@@ -315,7 +293,7 @@ impl<'a> PhotonMapper<'a> {
     fn gather_ray(
         &self,
         vertex: &Vertex<'_>,
-        guide: Option<&Guide>,
+        guide: Option<&Facing<'_>>,
         sampler: &mut Sampler,
         scratch: &mut Scratch,
     ) -> Rgb {
@@ -365,7 +343,11 @@ impl<'a> PhotonMapper<'a> {
 
 /// The first segment of a gather ray, with its f·cos/pdf: by the guide, by the BSDF, or where there is
 /// a glossy lobe by an equal mixture of both.
-fn start_gather(vertex: &Vertex<'_>, guide: Option<&Guide>, sampler: &mut Sampler) -> Option<(Ray, Rgb)> {
+fn start_gather(
+    vertex: &Vertex<'_>,
+    guide: Option<&Facing<'_>>,
+    sampler: &mut Sampler,
+) -> Option<(Ray, Rgb)> {
     let Vertex { point, bsdf, wo, .. } = *vertex;
     let (u, u_lobe, u_technique) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
     let guide_share = match guide {

@@ -5,9 +5,11 @@
 mod config;
 mod estimate;
 mod guide;
+mod guides;
 
 pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show};
 pub(crate) use estimate::{PhotonMapper, Scratch};
+use guides::Guides;
 
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::PhotonMap;
@@ -20,6 +22,7 @@ pub(crate) struct Maps {
     pub caustic: PhotonMap,
     /// Light of caustics after one more bounce; empty unless gather rays are sent.
     pub afterglow: PhotonMap,
+    guides: Guides,
     pub ledger: Ledger,
 }
 
@@ -47,6 +50,7 @@ impl Maps {
             || build(pass.global),
             || rayon::join(|| build(pass.caustic), || build(pass.afterglow)),
         );
-        Some(Self { global, caustic, afterglow, ledger: pass.ledger })
+        let guides = if gathers { Guides::new(&global) } else { Guides::none() };
+        Some(Self { global, caustic, afterglow, guides, ledger: pass.ledger })
     }
 }
