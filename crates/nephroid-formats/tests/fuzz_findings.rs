@@ -1,0 +1,47 @@
+//! What the fuzz targets start from must be readable, or they would only ever fuzz the first error. Inputs that they
+//! find, once the reader is mended, are to be added here.
+
+use std::path::Path;
+
+use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
+use nephroid_formats::mitsuba::{Options, read_scene_str};
+use nephroid_formats::vfs::MemoryFiles;
+
+/// Names and contents of the seeds of a target.
+fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(target);
+    let read = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.unwrap().path();
+        (path.display().to_string(), std::fs::read(path).unwrap())
+    };
+    std::fs::read_dir(folder).unwrap().map(read).collect()
+}
+
+#[test]
+fn seeds_of_meshes_can_be_read() {
+    for (name, bytes) in seeds("obj") {
+        read_obj(&bytes, MeshOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    for (name, bytes) in seeds("ply") {
+        read_ply(&bytes, MeshOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+#[test]
+fn seeds_of_scenes_can_be_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
+    let file = |path: &str| std::fs::read(folder.join(path)).unwrap();
+    let files = MemoryFiles::default()
+        .with("m.obj", file("obj/quad.obj"))
+        .with("m.ply", file("ply/ascii.ply"))
+        .with("i.png", file("two_pixels.png"))
+        .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
+        .with("p.xml", "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"p\"/></scene>");
+    let options = Options { defines: Vec::new(), lenient: true };
+    for (name, bytes) in seeds("scene") {
+        let text = String::from_utf8(bytes).unwrap();
+        let read = read_scene_str("s.xml", &text, &files, &options);
+        let scene = read.unwrap_or_else(|errors| panic!("{name}: {errors}")).scene;
+        nephroid::world::World::new(scene).unwrap_or_else(|errors| panic!("{name}: {errors}"));
+    }
+}
