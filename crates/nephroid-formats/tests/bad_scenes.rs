@@ -557,7 +557,18 @@ fn broken_sensors_and_films() {
     check_whole(
         r#"<scene version="3.0.0">
 <sensor type="thinlens"/></scene>"#,
-        r#"s.xml:2:15: error: sensor "thinlens" cannot be rendered yet; --lenient takes a sharp picture in its place"#,
+        r#"s.xml:2:15: error: a "thinlens" needs an "aperture_radius"; write <float name="aperture_radius" value="…"/>, the radius of the lens in units of the scene; 0 makes all sharp"#,
+    );
+    check_whole(
+        r#"<scene version="3.0.0"><sensor type="thinlens">
+<float name="aperture_radius" value="-1"/><float name="focus_distance" value="0"/></sensor></scene>"#,
+        "s.xml:2:79: error: \"focus_distance\" must be above zero, not 0
+s.xml:2:38: error: \"aperture_radius\" must be zero or more, not -1",
+    );
+    check_whole(
+        r#"<scene version="3.0.0"><sensor type="spherical"/>
+</scene>"#,
+        r#"s.xml:1:38: error: sensor "spherical" cannot be rendered yet"#,
     );
 }
 

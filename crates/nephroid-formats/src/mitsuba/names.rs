@@ -61,7 +61,7 @@ pub(super) fn property_is_known(name: &str) -> bool {
 }
 
 pub(super) const SENSORS_LATER: &[&str] =
-    &["thinlens", "irradiancemeter", "radiancemeter", "distant", "batch", "spherical", "fluencemeter"];
+    &["irradiancemeter", "radiancemeter", "distant", "batch", "spherical", "fluencemeter"];
 
 pub(super) const FILMS_LATER: &[&str] = &["specfilm", "mfilm", "tiledhdrfilm"];
 

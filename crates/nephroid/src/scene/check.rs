@@ -40,7 +40,9 @@ fn check_camera(scene: &Scene, problems: &mut Problems) {
     if !scene.camera.to_world.is_invertible() {
         problems.add(Subject::Camera, "`to_world` cannot be undone: no axis may be scaled to zero");
     }
-    if let Projection::Perspective { fov_deg, principal_point_offset, .. } = scene.camera.projection {
+    if let Projection::Perspective { fov_deg, principal_point_offset, .. }
+    | Projection::ThinLens { fov_deg, principal_point_offset, .. } = scene.camera.projection
+    {
         if !(fov_deg > 0.0 && fov_deg < 180.0) {
             problems.add(
                 Subject::Camera,
@@ -50,6 +52,15 @@ fn check_camera(scene: &Scene, problems: &mut Problems) {
         if !principal_point_offset.is_finite() {
             problems.add(Subject::Camera, "the principal point's offset must be finite");
         }
+    }
+    if let Projection::ThinLens { aperture_radius, focus_distance, .. } = scene.camera.projection {
+        if !(aperture_radius >= 0.0 && aperture_radius.is_finite()) {
+            problems.add(
+                Subject::Camera,
+                format!("a lens of radius {aperture_radius}: write a number from 0 (all is sharp) upwards"),
+            );
+        }
+        positive(focus_distance, "distance in focus", Subject::Camera, problems);
     }
 }
 
@@ -356,6 +367,29 @@ mod tests {
                 "a pixel of its light's texture is negative: light cannot be",
             ]
         );
+    }
+
+    #[test]
+    fn a_lens_has_a_radius_and_a_distance_in_focus() {
+        let mut scene = empty();
+        let thin_lens = |aperture_radius, focus_distance| Projection::ThinLens {
+            fov_deg: 200.0,
+            fov_axis: FovAxis::X,
+            principal_point_offset: Vec2::ZERO,
+            aperture_radius,
+            focus_distance,
+        };
+        scene.camera.projection = thin_lens(-1.0, 0.0);
+        assert_eq!(
+            messages(&scene),
+            [
+                "a field of view of 200 degrees: write one between 0 and 180",
+                "a lens of radius -1: write a number from 0 (all is sharp) upwards",
+                "a distance in focus of 0: write a positive number",
+            ]
+        );
+        scene.camera.projection = thin_lens(f32::NAN, f32::INFINITY);
+        assert_eq!(messages(&scene).len(), 3);
     }
 
     #[test]
