@@ -123,6 +123,7 @@ fn material(material: &Material) -> &'static str {
         Material::Dielectric { .. } => "dielectric",
         Material::ThinDielectric { .. } => "thindielectric",
         Material::TwoSided { .. } => "twosided",
+        Material::Mask { .. } => "mask",
         Material::Null => "null",
     }
 }

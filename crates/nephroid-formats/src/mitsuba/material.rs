@@ -97,6 +97,7 @@ impl<'t> Reader<'t> {
                 other => other,
             },
             "twosided" => return self.two_sided(&plugin),
+            "mask" => return self.mask(&plugin),
             "null" => Material::Null,
             _ => return self.nearest_material(&plugin),
         };
@@ -223,12 +224,33 @@ impl<'t> Reader<'t> {
                     self.log.error(&element.location, message);
                     return None;
                 }
+                Material::Mask { .. } => {
+                    let message = Diagnostic::error(
+                        &element.location,
+                        "\"twosided\" takes no material that light passes through",
+                    );
+                    self.log.push(message.hint("put the \"twosided\" into the \"mask\""));
+                    return None;
+                }
                 Material::TwoSided { front, back } => sides.push([front, back][sides.len()]),
                 _ => sides.push(handle),
             }
         }
         let (front, back) = (sides[0], sides[sides.len() - 1]);
         Some(self.store(plugin, Material::TwoSided { front, back }))
+    }
+
+    fn mask(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Material>> {
+        let opacity = self.texture_property(plugin, "opacity", 0.5, Role::Reflectance);
+        let nested: Vec<_> = plugin.objects("bsdf").into_iter().map(|(_, element)| element).collect();
+        plugin.finish();
+        let [inside] = nested[..] else {
+            let message = format!("\"mask\" takes one material, not {}", nested.len());
+            self.log.error(plugin.location(), message);
+            return None;
+        };
+        let inside = self.material(inside)?;
+        Some(self.store(plugin, Material::Mask { opacity, inside }))
     }
 
     /// The nearest material that can be rendered to one that cannot yet.

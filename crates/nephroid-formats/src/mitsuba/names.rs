@@ -89,11 +89,11 @@ pub(super) const SHAPES_LATER: &[&str] = &[
 ];
 
 pub(super) const BSDFS: &[&str] =
-    &["diffuse", "phong", "conductor", "dielectric", "thindielectric", "twosided", "null"];
+    &["diffuse", "phong", "conductor", "dielectric", "thindielectric", "twosided", "mask", "null"];
 
 /// Those whose nearest simple material is one of their nested ones.
 pub(super) const BSDFS_WRAPPING: &[&str] =
-    &["mask", "bumpmap", "normalmap", "blendbsdf", "coating", "roughcoating", "mixturebsdf"];
+    &["bumpmap", "normalmap", "blendbsdf", "coating", "roughcoating", "mixturebsdf"];
 
 /// Those whose nearest simple material is diffuse.
 pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] = &[

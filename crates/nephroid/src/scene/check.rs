@@ -5,7 +5,7 @@ use crate::camera::Projection;
 use crate::color::Rgb;
 use crate::film::Filter;
 use crate::light::LightKind;
-use crate::material;
+use crate::material::{self, Material};
 use crate::math::Transform;
 use crate::shape::{Geometry, Mesh};
 use crate::texture::Texture;
@@ -190,6 +190,14 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
             if shape.geometry == Geometry::Plane {
                 problems.add(subject, "an infinite plane cannot emit: its power has no end; use a rectangle");
             }
+            if scene.materials.contains(shape.material)
+                && matches!(scene.materials[shape.material], Material::Mask { .. })
+            {
+                problems.add(
+                    subject,
+                    "a masked shape cannot emit: give the light to a shape without a mask, and shape it by a texture of its radiance",
+                );
+            }
             check_emission(scene, emission, subject, problems);
         }
     }
@@ -322,6 +330,7 @@ mod tests {
     use crate::handle::Arena;
     use crate::light::Light;
     use crate::math::{Affine2, DVec3, Vec2};
+    use crate::shape::Shape;
     use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
 
     fn empty() -> Scene {
@@ -343,6 +352,29 @@ mod tests {
 
     fn messages(scene: &Scene) -> Vec<String> {
         check(scene).into_iter().map(|problem| problem.message).collect()
+    }
+
+    #[test]
+    fn a_masked_shape_that_emits_is_refused() {
+        let mut scene = empty();
+        let white = scene.textures.constant(Rgb::WHITE);
+        let inside = scene.materials.push(Material::Diffuse { reflectance: white });
+        let material = scene.materials.push(Material::Mask { opacity: white, inside });
+        let shape = Shape {
+            name: String::new(),
+            geometry: Geometry::Rectangle,
+            to_world: Transform::IDENTITY,
+            material,
+            emission: Some(white),
+            flip_normals: false,
+        };
+        scene.shapes.push(shape);
+        assert_eq!(
+            messages(&scene),
+            [
+                "a masked shape cannot emit: give the light to a shape without a mask, and shape it by a texture of its radiance"
+            ]
+        );
     }
 
     #[test]
