@@ -105,7 +105,7 @@ fn sensor_and_film() {
     let warnings: Vec<_> = file.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         warnings,
-        ["s.xml:5:47: warning: \"hide_emitters\" cannot be had yet: the camera sees lamps and sky"]
+        ["s.xml:5:54: warning: \"hide_emitters\" cannot be had yet: the camera sees lamps and sky"]
     );
     let offset = Vec2::new(0.1, 0.0);
     let projection =
@@ -311,6 +311,53 @@ fn materials() {
 }
 
 #[test]
+fn masks_of_numbers_and_textures() {
+    let mask = |opacity: &str| {
+        let paper = r#"<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>"#;
+        let (scene, mask, warnings) = material(&format!(r#"<bsdf type="mask">{opacity}{paper}</bsdf>"#));
+        assert_eq!(warnings, [""; 0]);
+        let Material::Mask { opacity, inside } = mask else { panic!("{mask:?}") };
+        assert!(matches!(scene.materials[inside], Material::TwoSided { .. }));
+        scene.textures.list[opacity].clone()
+    };
+    assert_eq!(mask(""), Texture::Constant(Rgb::splat(0.5)));
+    assert_eq!(mask(r#"<float name="opacity" value="0.2"/>"#), Texture::Constant(Rgb::splat(0.2)));
+    let board = r#"<texture name="opacity" type="checkerboard"/>"#;
+    assert!(matches!(mask(board), Texture::Checkerboard(_)));
+}
+
+#[test]
+fn metals_without_a_measurement_are_mirrors() {
+    let (_, metal, warnings) =
+        material(r#"<bsdf type="conductor"><string name="material" value="Ta_palik"/></bsdf>"#);
+    assert!(matches!(metal, Material::Conductor { metal: Metal::PerfectMirror, .. }));
+    assert_eq!(
+        warnings,
+        [
+            r#"s.xml:2:55: warning: metal "Ta_palik" cannot be rendered yet; it becomes a perfect mirror; give "eta" and "k" to have its colour"#
+        ]
+    );
+    let (_, metal, warnings) =
+        material(r#"<bsdf type="conductor"><string name="material" value="Na_palik"/></bsdf>"#);
+    assert!(matches!(metal, Material::Conductor { metal: Metal::Index { .. }, .. }));
+    assert_eq!(warnings, [""; 0]);
+}
+
+#[test]
+fn textures_and_images_know_where_they_stand() {
+    let file = read(
+        r#"<bsdf type="diffuse"><rgb name="reflectance" value="0.3"/></bsdf>
+        <bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="grey.png"/></texture></bsdf>
+        <shape type="sphere"/>"#,
+    );
+    let textures = &file.scene.textures;
+    assert_eq!((textures.list.len(), textures.images.len()), (3, 1));
+    let places: Vec<_> = file.origins.textures.iter().map(ToString::to_string).collect();
+    assert_eq!(places, ["s.xml:2:53", "s.xml:3:30", "s.xml:4:22"]);
+    assert_eq!(file.origins.images[0].to_string(), "s.xml:3:103");
+}
+
+#[test]
 fn two_sided_materials_take_one_or_two() {
     let (scene, both, _) = material(r#"<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>"#);
     let first = scene.materials.iter_handles().next().unwrap().0;
@@ -344,8 +391,8 @@ fn materials_not_built_yet_give_way_to_their_nearest_kin() {
     };
     assert!(matches!(kin(r#"<bsdf type="roughconductor"/>"#), Material::Conductor { .. }));
     assert!(matches!(kin(r#"<bsdf type="roughdielectric"/>"#), Material::Dielectric { .. }));
-    let mask = r#"<bsdf type="mask"><texture name="opacity" type="checkerboard"/><bsdf type="null"/></bsdf>"#;
-    assert_eq!(kin(mask), Material::Null);
+    let bumps = r#"<bsdf type="bumpmap"><texture type="checkerboard"/><bsdf type="null"/></bsdf>"#;
+    assert_eq!(kin(bumps), Material::Null);
     let principled = r#"<bsdf type="principled"><rgb name="base_color" value="0.3"/></bsdf>"#;
     assert!(matches!(kin(principled), Material::Diffuse { .. }));
 }

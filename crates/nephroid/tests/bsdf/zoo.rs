@@ -108,7 +108,7 @@ impl Zoo {
         let nested = self.materials.push(Material::TwoSided { front: mirror, back: phong });
         self.add("mirror before diffuse, nested", Material::TwoSided { front: nested, back: paper });
         let opacity = self.grey(0.3);
-        self.add("masked", Material::Mask { opacity, inside: phong });
+        self.add("phong under a mask", Material::Mask { opacity, inside: phong });
     }
 
     fn grey(&mut self, value: f32) -> Handle<Texture> {
