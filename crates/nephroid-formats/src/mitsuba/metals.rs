@@ -91,10 +91,10 @@ pub(super) enum Known {
 pub(super) fn metal(name: &str) -> Option<Known> {
     let lower = name.to_ascii_lowercase();
     let plain = lower.strip_suffix("_palik").unwrap_or(&lower);
-    let is = |known: &&str| known.eq_ignore_ascii_case(plain);
+    let is = |known: &str| known.eq_ignore_ascii_case(plain);
     match METALS.iter().find(|(known, _, _)| is(known)) {
         Some((_, eta, k)) => Some(Known::Index(Rgb::from(*eta), Rgb::from(*k))),
-        None => UNMEASURED.iter().any(|known| is(&known)).then_some(Known::Name),
+        None => UNMEASURED.iter().any(|known| is(known)).then_some(Known::Name),
     }
 }
 
