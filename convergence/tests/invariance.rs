@@ -92,7 +92,8 @@ fn shapes(b: &mut Builder) {
     let (p0, p1) = (Vec3::new(0.8, 0.0, 0.3), Vec3::new(0.8, 0.7, 0.2));
     b.shape(Geometry::Cylinder { p0, p1, radius: 0.12 }, Transform::IDENTITY, red);
     let lying = floor.then(Transform::translate(DVec3::new(-0.2, 0.05, 1.0)));
-    b.shape(Geometry::Disk, Transform::scale(DVec3::splat(0.3)).then(lying), red);
+    let veil = b.scene.materials.push(Material::Mask { opacity: more, inside: red });
+    b.shape(Geometry::Disk, Transform::scale(DVec3::splat(0.3)).then(lying), veil);
     let mesh = Mesh {
         positions: [[-1.0, 0.5, -1.0], [-0.8, 1.4, -0.9], [-0.5, 0.6, -1.0], [-0.7, 0.8, -0.6]]
             .map(Vec3::from_array)

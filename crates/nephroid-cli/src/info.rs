@@ -79,6 +79,13 @@ fn camera(scene: &Scene) -> Value {
             "fov_deg": short(fov_deg),
             "fov_axis": format!("{fov_axis:?}").to_lowercase(),
         }),
+        Projection::ThinLens { fov_deg, fov_axis, aperture_radius, focus_distance, .. } => json!({
+            "projection": "thin lens",
+            "fov_deg": short(fov_deg),
+            "fov_axis": format!("{fov_axis:?}").to_lowercase(),
+            "aperture_radius": short(aperture_radius),
+            "focus_distance": short(focus_distance),
+        }),
     };
     about["origin"] = vector(to_world.point(Vec3::ZERO));
     about["direction"] = vector(to_world.vector(Vec3::Z).normalize_or_zero());
@@ -116,6 +123,7 @@ fn material(material: &Material) -> &'static str {
         Material::Dielectric { .. } => "dielectric",
         Material::ThinDielectric { .. } => "thindielectric",
         Material::TwoSided { .. } => "twosided",
+        Material::Mask { .. } => "mask",
         Material::Null => "null",
     }
 }

@@ -97,6 +97,7 @@ fn origin<'o>(subject: Subject, origins: &'o Origins, meshes: &[Option<usize>]) 
         Subject::Mesh(i) => {
             meshes.iter().position(|mesh| *mesh == Some(i)).and_then(|shape| origins.shapes.get(shape))
         }
-        Subject::Texture(_) | Subject::Image(_) => None,
+        Subject::Texture(i) => origins.textures.get(i),
+        Subject::Image(i) => origins.images.get(i),
     }
 }

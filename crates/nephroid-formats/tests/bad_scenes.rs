@@ -190,6 +190,22 @@ s.xml:2:22: error: <float> lacks the attribute "value""#,
         r#"s.xml:2:55: error: unknown metal "Aw"; did you mean "Ag"?"#,
     );
     check(
+        r#"<bsdf type="mask"><float name="opacity" value="0.3"/></bsdf>"#,
+        r#"s.xml:2:13: error: "mask" takes one material, not 0"#,
+    );
+    check(
+        r#"<bsdf type="mask"><bsdf type="diffuse"/><bsdf type="diffuse"/></bsdf>"#,
+        r#"s.xml:2:13: error: "mask" takes one material, not 2"#,
+    );
+    check(
+        r#"<bsdf type="mask"><string name="opacity" value="half"/><bsdf type="diffuse"/></bsdf>"#,
+        r#"s.xml:2:49: error: "opacity" must be a colour or texture, not a string"#,
+    );
+    check(
+        r#"<bsdf type="twosided"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>"#,
+        r#"s.xml:2:23: error: "twosided" takes no material that light passes through; put the "twosided" into the "mask""#,
+    );
+    check(
         r#"<bsdf type="diffuse"><texture type="checkerboard"/></bsdf>"#,
         r#"s.xml:2:22: error: <texture> has no place in <bsdf type="diffuse">"#,
     );
@@ -220,8 +236,12 @@ fn broken_references() {
     check(
         r#"<bsdf type="mask" id="a"><ref id="b"/></bsdf>
 <bsdf type="mask" id="b"><ref id="a"/></bsdf>"#,
-        r#"s.xml:2:13: warning: bsdf "mask" cannot be rendered yet; the material in it stands for it
-s.xml:3:13: warning: bsdf "mask" cannot be rendered yet; the material in it stands for it
+        "s.xml:2:1: error: the material refers to itself",
+    );
+    check(
+        r#"<bsdf type="bumpmap" id="a"><ref id="b"/></bsdf>
+<bsdf type="mask" id="b"><ref id="a"/></bsdf>"#,
+        r#"s.xml:2:13: warning: bsdf "bumpmap" cannot be rendered yet; the material in it stands for it
 s.xml:2:1: error: the material refers to itself"#,
     );
     check(
@@ -557,7 +577,18 @@ fn broken_sensors_and_films() {
     check_whole(
         r#"<scene version="3.0.0">
 <sensor type="thinlens"/></scene>"#,
-        r#"s.xml:2:15: error: sensor "thinlens" cannot be rendered yet; --lenient takes a sharp picture in its place"#,
+        r#"s.xml:2:15: error: a "thinlens" needs an "aperture_radius"; write <float name="aperture_radius" value="…"/>, the radius of the lens in units of the scene; 0 makes all sharp"#,
+    );
+    check_whole(
+        r#"<scene version="3.0.0"><sensor type="thinlens">
+<float name="aperture_radius" value="-1"/><float name="focus_distance" value="0"/></sensor></scene>"#,
+        "s.xml:2:79: error: \"focus_distance\" must be above zero, not 0
+s.xml:2:38: error: \"aperture_radius\" must be zero or more, not -1",
+    );
+    check_whole(
+        r#"<scene version="3.0.0"><sensor type="spherical"/>
+</scene>"#,
+        r#"s.xml:1:38: error: sensor "spherical" cannot be rendered yet"#,
     );
 }
 

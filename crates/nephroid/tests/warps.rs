@@ -65,6 +65,22 @@ fn powers_of_the_cosine_follow_it() {
     }
 }
 
+/// The angle to the axis keeps its digits however narrow the lobe: sin² θ = 1 − u^(2/(n+1)).
+#[test]
+fn narrow_powers_of_the_cosine_keep_their_digits() {
+    for exponent in [9e3f32, 1.1e4, 1e5, 1e6, 1e8, 1e12] {
+        for i in 1..200u32 {
+            let u = Vec2::new(i as f32 / 200.0, 0.3);
+            let w = warp::square_to_cosine_power(u, exponent);
+            let exact = -libm::expm1(2.0 * libm::log(f64::from(u.x)) / (f64::from(exponent) + 1.0));
+            let ratio = f64::from(w.truncate().length()) / exact.sqrt();
+            // Below 10⁴ by subtraction, of which ε over sin² remains.
+            let tolerance = if exponent > 1e4 { 5e-7 } else { 2e-7 / exact };
+            assert!((ratio - 1.0).abs() < tolerance, "exponent {exponent}, u {}: {ratio}", u.x);
+        }
+    }
+}
+
 /// Barycentric weights of two vertices: density 2 on the half of the square below the diagonal.
 #[test]
 fn the_triangle_is_uniform() {

@@ -6,7 +6,7 @@ use super::document::Element;
 use super::names::property_is_known;
 use super::parameters::shortened;
 use super::reader::Reader;
-use super::value::Value;
+use super::value::{Property, Value};
 use crate::diagnostic::{Diagnostic, Location};
 
 /// Integrators that only wrap another one, to compute more about the same picture.
@@ -147,7 +147,11 @@ impl<'t> Reader<'t> {
                     Value::Text(v) => ParameterValue::Text(v.to_string()),
                     _ => continue,
                 };
-                if WRAPPERS.contains(&plugin.kind) && property.name != "hide_emitters" {
+                if property.name == "hide_emitters" {
+                    self.lamps_stay(property, &value);
+                    continue;
+                }
+                if WRAPPERS.contains(&plugin.kind) {
                     continue;
                 }
                 request.parameters.retain(|p| p.name != property.name);
@@ -168,6 +172,18 @@ impl<'t> Reader<'t> {
                 Some((_, inner)) => element = inner,
                 None => return request,
             }
+        }
+    }
+
+    /// Says that lamps are seen all the same, whatever integrator takes the picture.
+    fn lamps_stay(&self, property: &Property, value: &ParameterValue) {
+        match value {
+            ParameterValue::Bool(false) => {}
+            ParameterValue::Bool(true) => {
+                let message = "\"hide_emitters\" cannot be had yet: the camera sees lamps and sky";
+                self.log.warn(&property.location, message);
+            }
+            _ => self.log.error(&property.location, "\"hide_emitters\" must be a boolean"),
         }
     }
 }

@@ -3,8 +3,10 @@
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::material::{Material, Metal};
+use nephroid::texture::Texture;
 
 use super::document::Element;
+use super::metals::{Known, metal, names};
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
 use super::parameters::shortened;
 use super::properties::Plugin;
@@ -38,22 +40,6 @@ const IORS: [(&str, f32); 23] = [
     ("amber", 1.55),
     ("pet", 1.575),
     ("diamond", 2.419),
-];
-
-/// Complex indices of refraction η and k of metals, as seen in linear RGB.
-const METALS: [(&str, [f32; 3], [f32; 3]); 5] = [
-    ("Ag", [0.1552, 0.1167, 0.1384], [4.8283, 3.1222, 2.1470]),
-    ("Al", [1.6574, 0.8803, 0.5212], [9.2239, 6.2695, 4.8370]),
-    ("Au", [0.1431, 0.3749, 1.4425], [3.9831, 2.3857, 1.6032]),
-    ("Cr", [4.3697, 2.9167, 1.6547], [5.2064, 4.2314, 3.7549]),
-    ("Cu", [0.2004, 0.9240, 1.1022], [3.9129, 2.4528, 2.1421]),
-];
-
-/// Metals that Mitsuba knows and the table above does not.
-const METALS_LATER: [&str; 34] = [
-    "a-C", "AlAs", "AlSb", "Be", "CsI", "Cu2O", "CuO", "d-C", "Hg", "HgTe", "Ir", "K", "Li", "MgO", "Mo",
-    "Na_palik", "Nb", "Ni_palik", "Rh", "Se", "SiC", "SnTe", "Ta", "Te", "ThF4", "TiC", "TiN", "TiO2", "VC",
-    "V_palik", "VN", "W", "Cr_palik", "Ag_palik",
 ];
 
 impl<'t> Reader<'t> {
@@ -97,6 +83,7 @@ impl<'t> Reader<'t> {
                 other => other,
             },
             "twosided" => return self.two_sided(&plugin),
+            "mask" => return self.mask(&plugin),
             "null" => Material::Null,
             _ => return self.nearest_material(&plugin),
         };
@@ -115,18 +102,13 @@ impl<'t> Reader<'t> {
             return handle;
         }
         let albedo = if is_lamp { Rgb::BLACK } else { Rgb::splat(0.5) };
-        let reflectance = self.textures.constant(albedo);
+        let reflectance = self.store_texture(plugin.location(), Texture::Constant(albedo));
         let handle = self.store(plugin, Material::Diffuse { reflectance });
         self.default_materials[usize::from(is_lamp)] = Some(handle);
         handle
     }
 
-    fn reflectance(
-        &mut self,
-        plugin: &Plugin<'t>,
-        name: &'static str,
-        default: f32,
-    ) -> Handle<nephroid::texture::Texture> {
+    fn reflectance(&mut self, plugin: &Plugin<'t>, name: &'static str, default: f32) -> Handle<Texture> {
         self.texture_property(plugin, name, default, Role::Reflectance)
     }
 
@@ -152,16 +134,17 @@ impl<'t> Reader<'t> {
         let Some((name, at)) = material.filter(|(name, _)| !name.eq_ignore_ascii_case("none")) else {
             return Metal::PerfectMirror;
         };
-        if let Some((_, eta, k)) = METALS.iter().find(|(known, _, _)| known.eq_ignore_ascii_case(name)) {
-            return Metal::Index { eta: Rgb::from(*eta), k: Rgb::from(*k) };
-        }
-        if METALS_LATER.iter().any(|known| known.eq_ignore_ascii_case(name)) {
-            self.log
-                .warn(at, format!("metal \"{name}\" cannot be rendered yet; it becomes a perfect mirror"));
-        } else {
-            let message = format!("unknown metal \"{}\"", shortened(name));
-            let known = METALS.iter().map(|(name, _, _)| *name).chain(METALS_LATER).chain(["none"]);
-            self.log.push(Diagnostic::error(at, message).did_you_mean(name, known));
+        match metal(name) {
+            Some(Known::Index(eta, k)) => return Metal::Index { eta, k },
+            Some(Known::Name) => {
+                let message = format!("metal \"{name}\" cannot be rendered yet; it becomes a perfect mirror");
+                self.log
+                    .push(Diagnostic::warning(at, message).hint("give \"eta\" and \"k\" to have its colour"));
+            }
+            None => {
+                let message = format!("unknown metal \"{}\"", shortened(name));
+                self.log.push(Diagnostic::error(at, message).did_you_mean(name, names()));
+            }
         }
         Metal::PerfectMirror
     }
@@ -223,12 +206,33 @@ impl<'t> Reader<'t> {
                     self.log.error(&element.location, message);
                     return None;
                 }
+                Material::Mask { .. } => {
+                    let message = Diagnostic::error(
+                        &element.location,
+                        "\"twosided\" takes no material that light passes through",
+                    );
+                    self.log.push(message.hint("put the \"twosided\" into the \"mask\""));
+                    return None;
+                }
                 Material::TwoSided { front, back } => sides.push([front, back][sides.len()]),
                 _ => sides.push(handle),
             }
         }
         let (front, back) = (sides[0], sides[sides.len() - 1]);
         Some(self.store(plugin, Material::TwoSided { front, back }))
+    }
+
+    fn mask(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Material>> {
+        let opacity = self.texture_property(plugin, "opacity", 0.5, Role::Reflectance);
+        let nested: Vec<_> = plugin.objects("bsdf").into_iter().map(|(_, element)| element).collect();
+        plugin.finish();
+        let [inside] = nested[..] else {
+            let message = format!("\"mask\" takes one material, not {}", nested.len());
+            self.log.error(plugin.location(), message);
+            return None;
+        };
+        let inside = self.material(inside)?;
+        Some(self.store(plugin, Material::Mask { opacity, inside }))
     }
 
     /// The nearest material that can be rendered to one that cannot yet.

@@ -11,6 +11,7 @@ mod emitter;
 mod integrator;
 mod log;
 mod material;
+mod metals;
 mod names;
 mod number;
 mod open;
@@ -73,6 +74,11 @@ pub struct Origins {
     pub shapes: Vec<Location>,
     /// Each of [`Scene::lights`].
     pub lights: Vec<Location>,
+    /// Each of [`Textures::list`](nephroid::texture::Textures::list): a texture, or the property that is a
+    /// colour.
+    pub textures: Vec<Location>,
+    /// Each of [`Textures::images`](nephroid::texture::Textures::images): where its file is first named.
+    pub images: Vec<Location>,
     /// Each of [`Scene::materials`]. A default material has the place of the first shape it is for.
     pub materials: Vec<Location>,
 }
@@ -131,6 +137,8 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
         camera: document.root.clone(),
         shapes: Vec::new(),
         lights: Vec::new(),
+        textures: Vec::new(),
+        images: Vec::new(),
         materials: Vec::new(),
     };
     let mut reader = Reader::new(&ids, log, files, &document.folders, options.lenient, origins);

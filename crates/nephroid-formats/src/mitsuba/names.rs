@@ -61,7 +61,7 @@ pub(super) fn property_is_known(name: &str) -> bool {
 }
 
 pub(super) const SENSORS_LATER: &[&str] =
-    &["thinlens", "irradiancemeter", "radiancemeter", "distant", "batch", "spherical", "fluencemeter"];
+    &["irradiancemeter", "radiancemeter", "distant", "batch", "spherical", "fluencemeter"];
 
 pub(super) const FILMS_LATER: &[&str] = &["specfilm", "mfilm", "tiledhdrfilm"];
 
@@ -89,11 +89,11 @@ pub(super) const SHAPES_LATER: &[&str] = &[
 ];
 
 pub(super) const BSDFS: &[&str] =
-    &["diffuse", "phong", "conductor", "dielectric", "thindielectric", "twosided", "null"];
+    &["diffuse", "phong", "conductor", "dielectric", "thindielectric", "twosided", "mask", "null"];
 
 /// Those whose nearest simple material is one of their nested ones.
 pub(super) const BSDFS_WRAPPING: &[&str] =
-    &["mask", "bumpmap", "normalmap", "blendbsdf", "coating", "roughcoating", "mixturebsdf"];
+    &["bumpmap", "normalmap", "blendbsdf", "coating", "roughcoating", "mixturebsdf"];
 
 /// Those whose nearest simple material is diffuse.
 pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] = &[

@@ -41,23 +41,13 @@ impl<'t> Reader<'t> {
         let projection = match plugin.kind {
             "perspective" => self.perspective(&plugin),
             "orthographic" => Projection::Orthographic,
-            "thinlens" if self.lenient => {
-                let message = "sensor \"thinlens\" cannot be rendered yet; \"perspective\" stands for it";
-                self.log.warn(plugin.location(), message);
-                plugin.ignore(&["aperture_radius"]);
-                self.perspective(&plugin)
-            }
+            "thinlens" => self.thin_lens(&plugin),
             kind if SENSORS_LATER.contains(&kind) => {
-                let mut message =
-                    Diagnostic::error(plugin.location(), format!("sensor \"{kind}\" cannot be rendered yet"));
-                if kind == "thinlens" {
-                    message = message.hint("--lenient takes a sharp picture in its place");
-                }
-                self.log.push(message);
+                self.log.error(plugin.location(), format!("sensor \"{kind}\" cannot be rendered yet"));
                 return None;
             }
             _ => {
-                self.unknown_kind(&plugin, &[&["perspective", "orthographic"], SENSORS_LATER]);
+                self.unknown_kind(&plugin, &[&["perspective", "thinlens", "orthographic"], SENSORS_LATER]);
                 return None;
             }
         };
@@ -70,6 +60,40 @@ impl<'t> Reader<'t> {
         }
         plugin.finish();
         Some(Sensor { camera: Camera { to_world, projection }, film, sample_count })
+    }
+
+    /// A perspective camera with a lens. As in Mitsuba, the lens must have a radius, and what is in focus
+    /// by default is the far clipping plane.
+    fn thin_lens(&self, plugin: &Plugin<'t>) -> Projection {
+        let far_clip = plugin.float("far_clip", 1e4);
+        let focus_distance = plugin.positive("focus_distance", far_clip);
+        let aperture_radius = plugin.optional_float("aperture_radius");
+        match (aperture_radius, plugin.property("aperture_radius")) {
+            (None, None) => {
+                let message =
+                    Diagnostic::error(plugin.location(), "a \"thinlens\" needs an \"aperture_radius\"");
+                self.log.push(message.hint(
+                    "write <float name=\"aperture_radius\" value=\"…\"/>, the radius of the lens in units of \
+                     the scene; 0 makes all sharp",
+                ));
+            }
+            (Some(radius), Some(property)) if radius < 0.0 => {
+                let message = format!("\"aperture_radius\" must be zero or more, not {radius}");
+                self.log.error(&property.location, message);
+            }
+            _ => {}
+        }
+        let aperture_radius = aperture_radius.unwrap_or(0.0).max(0.0);
+        match self.perspective(plugin) {
+            Projection::Perspective { fov_deg, fov_axis, principal_point_offset } => Projection::ThinLens {
+                fov_deg,
+                fov_axis,
+                principal_point_offset,
+                aperture_radius,
+                focus_distance,
+            },
+            other => other,
+        }
     }
 
     fn perspective(&self, plugin: &Plugin<'t>) -> Projection {

@@ -31,9 +31,18 @@ impl<'t> Reader<'t> {
         role: Role,
     ) -> Handle<Texture> {
         match self.paint(plugin, name, default, role) {
-            Paint::Flat(color) => self.textures.constant(color),
+            Paint::Flat(color) => {
+                let at = plugin.property(name).map_or(plugin.location(), |p| &p.location);
+                self.store_texture(at, Texture::Constant(color))
+            }
             Paint::Varied(texture) => texture,
         }
+    }
+
+    /// A texture of the scene, and where it stands in the file.
+    pub(super) fn store_texture(&mut self, at: &Location, texture: Texture) -> Handle<Texture> {
+        self.origins.textures.push(at.clone());
+        self.textures.push(texture)
     }
 
     /// A property that must be one colour.
@@ -139,7 +148,7 @@ impl<'t> Reader<'t> {
         }
         self.texture_of.insert(element.number, Outcome::Open);
         let texture = self.nested(&element.location, |reader| reader.new_texture(element));
-        let handle = texture.map(|texture| self.textures.push(texture));
+        let handle = texture.map(|texture| self.store_texture(&element.location, texture));
         self.texture_of.insert(element.number, handle.map_or(Outcome::Failed, Outcome::Done));
         handle
     }
@@ -205,6 +214,7 @@ impl<'t> Reader<'t> {
                     );
                     self.log.warn(at, message);
                 }
+                self.origins.images.push(at.clone());
                 let handle = self.textures.images.push(file.image);
                 self.image_of.insert((path, raw), handle);
                 Some(handle)

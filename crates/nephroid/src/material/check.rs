@@ -31,6 +31,10 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
                 problems.side("back", materials, material, *back);
             }
         }
+        Material::Mask { opacity, inside } => {
+            problems.opacity(*opacity);
+            problems.stored_before("inside", materials, material, *inside);
+        }
         Material::Null => {}
     }
     problems.list
@@ -66,6 +70,19 @@ impl Problems<'_> {
             return None;
         }
         Some(value)
+    }
+
+    fn opacity(&mut self, texture: Handle<Texture>) {
+        if !self.textures.list.contains(texture) {
+            self.add("opacity refers to a texture that does not exist");
+        } else if let Texture::Constant(value) = self.textures.list[texture]
+            && !(value.min_channel() >= 0.0 && value.max_channel() <= 1.0)
+        {
+            self.add(format!(
+                "opacity is {}, but must be between 0 (not there) and 1 (not masked)",
+                show(value)
+            ));
+        }
     }
 
     fn phong(&mut self, diffuse: Handle<Texture>, specular: Handle<Texture>, exponent: f32) {
@@ -115,6 +132,26 @@ impl Problems<'_> {
         }
     }
 
+    /// Whether a material that another refers to may be looked at.
+    fn stored_before(
+        &mut self,
+        name: &str,
+        materials: &Arena<Material>,
+        owner: Handle<Material>,
+        other: Handle<Material>,
+    ) -> bool {
+        if !materials.contains(other) {
+            self.add(format!("{name} refers to a material that does not exist"));
+        } else if other.index() >= owner.index() {
+            self.add(format!(
+                "{name} refers to the material itself or a later one; store what it refers to first"
+            ));
+        } else {
+            return true;
+        }
+        false
+    }
+
     fn side(
         &mut self,
         name: &str,
@@ -122,11 +159,12 @@ impl Problems<'_> {
         owner: Handle<Material>,
         side: Handle<Material>,
     ) {
-        if !materials.contains(side) {
-            self.add(format!("{name} refers to a material that does not exist"));
-        } else if side.index() >= owner.index() {
+        if !self.stored_before(name, materials, owner, side) {
+            return;
+        }
+        if let Material::Mask { .. } = materials[side] {
             self.add(format!(
-                "{name} refers to the material itself or a later one; store what it refers to first"
+                "{name} is a mask, which cuts out both sides; put the two-sided material into the mask"
             ));
         } else if let Some(kind) = two_sided_already(&materials[side]) {
             self.add(format!(
@@ -145,7 +183,8 @@ fn two_sided_already(material: &Material) -> Option<&'static str> {
         Material::Diffuse { .. }
         | Material::Phong { .. }
         | Material::Conductor { .. }
-        | Material::TwoSided { .. } => None,
+        | Material::TwoSided { .. }
+        | Material::Mask { .. } => None,
     }
 }
 

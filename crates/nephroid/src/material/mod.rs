@@ -9,6 +9,7 @@ mod conductor;
 mod dielectric;
 mod fresnel;
 mod lambertian;
+mod mask;
 mod phong;
 mod split;
 mod surface;
@@ -85,6 +86,15 @@ pub enum Material {
         /// On the other.
         back: Handle<Material>,
     },
+    /// A material that is there with a probability, decided for each ray: a leaf cut out of a rectangle,
+    /// a veil. It scatters as what is inside, and [`Material::at`] sees nothing else.
+    Mask {
+        /// The probability, in [0, 1], that a ray meets the surface; else it passes. Colours count by
+        /// their luminance.
+        opacity: Handle<Texture>,
+        /// How the surface scatters where it is there.
+        inside: Handle<Material>,
+    },
     /// Nothing: light passes as if the surface were not there.
     Null,
 }
@@ -123,7 +133,7 @@ impl Material {
         wo: Vec3,
     ) -> Bsdf {
         let mut surface = *surface;
-        let mut side = material;
+        let mut side = Self::unmasked(materials, material);
         while let Self::TwoSided { front, back } = materials[side] {
             if wo.dot(surface.ng) < 0.0 {
                 surface = surface.flipped();
@@ -178,9 +188,11 @@ impl Material {
                     Lobes::Conductor(Conductor { metal, reflectance })
                 }
             }
-            Self::Diffuse { .. } | Self::Phong { .. } | Self::Conductor { .. } | Self::TwoSided { .. } => {
-                Lobes::Black
-            }
+            Self::Diffuse { .. }
+            | Self::Phong { .. }
+            | Self::Conductor { .. }
+            | Self::TwoSided { .. }
+            | Self::Mask { .. } => Lobes::Black,
         }
     }
 }

@@ -45,6 +45,12 @@ pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
 
+/// eˣ − 1, to full precision for small x, too.
+#[inline]
+pub fn exp_m1(x: f32) -> f32 {
+    libm::expm1f(x)
+}
+
 /// Natural logarithm.
 #[inline]
 pub fn ln(x: f32) -> f32 {

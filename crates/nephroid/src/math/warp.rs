@@ -3,7 +3,7 @@
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use super::real::{atan2, cos, sin_cos};
+use super::real::{atan2, cos, exp_m1, ln, pow, sin_cos};
 use super::{Vec2, Vec3};
 
 /// Uniform on the unit disk, by concentric squares (Shirley and Chiu 1997).
@@ -106,8 +106,10 @@ pub fn one_minus_cos(theta: f32) -> f32 {
 /// Density ∝ cosⁿ about `+z` on the hemisphere (Lafortune and Willems 1994).
 #[inline]
 pub fn square_to_cosine_power(u: Vec2, exponent: f32) -> Vec3 {
-    let z = super::real::pow(u.x, 1.0 / (exponent + 1.0));
-    let r = (1.0 - z * z).max(0.0).sqrt();
+    let z = pow(u.x, 1.0 / (exponent + 1.0));
+    // The subtraction leaves a narrow lobe's radius few digits, and above 10⁷ none.
+    let r_sq = if exponent > 1e4 { -exp_m1(2.0 * ln(u.x) / (exponent + 1.0)) } else { 1.0 - z * z };
+    let r = r_sq.max(0.0).sqrt();
     let phi = 2.0 * PI * u.y;
     Vec3::new(r * cos(phi), r * cos(phi - FRAC_PI_2), z)
 }
@@ -118,7 +120,7 @@ pub fn square_to_cosine_power_pdf(cos_theta: f32, exponent: f32) -> f32 {
     if cos_theta <= 0.0 {
         return 0.0;
     }
-    (exponent + 1.0) / (2.0 * PI) * super::real::pow(cos_theta, exponent)
+    (exponent + 1.0) / (2.0 * PI) * pow(cos_theta, exponent)
 }
 
 /// Uniform on a triangle: barycentric weights of its second and third vertex (Heitz 2019,

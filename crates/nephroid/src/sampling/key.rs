@@ -10,6 +10,8 @@ pub enum Stream {
     CausticPhotons = 3,
     /// Trial photon paths that count how many photons a path stores.
     Pilot = 4,
+    /// Whether a ray meets a masked surface.
+    Masks = 5,
 }
 
 /// A 64-bit hash of what identifies a sequence: (seed, iteration, stream, path, …).
@@ -18,14 +20,14 @@ pub struct Key(u64);
 
 impl Key {
     /// The key of one stream of one iteration.
-    pub fn new(seed: u64, iteration: u64, stream: Stream) -> Self {
+    pub const fn new(seed: u64, iteration: u64, stream: Stream) -> Self {
         Self(mix(seed)).with(iteration).with(stream as u64)
     }
 
     /// Adds a number to what is identified: a path, a pixel, a purpose.
     #[inline]
     #[must_use]
-    pub fn with(self, value: u64) -> Self {
+    pub const fn with(self, value: u64) -> Self {
         Self(mix(self.0 ^ mix(value.wrapping_add(0x9e37_79b9_7f4a_7c15))))
     }
 
@@ -40,7 +42,7 @@ impl Key {
 /// multiply and xor-shift with the constants of Stafford's variant 13, as in SplitMix64
 /// (Steele, Lea and Flood 2014, doi 10.1145/2660193.2660195).
 #[inline]
-fn mix(mut x: u64) -> u64 {
+const fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)

@@ -5,7 +5,7 @@ use crate::camera::Projection;
 use crate::color::Rgb;
 use crate::film::Filter;
 use crate::light::LightKind;
-use crate::material;
+use crate::material::{self, Material};
 use crate::math::Transform;
 use crate::shape::{Geometry, Mesh};
 use crate::texture::Texture;
@@ -40,7 +40,9 @@ fn check_camera(scene: &Scene, problems: &mut Problems) {
     if !scene.camera.to_world.is_invertible() {
         problems.add(Subject::Camera, "`to_world` cannot be undone: no axis may be scaled to zero");
     }
-    if let Projection::Perspective { fov_deg, principal_point_offset, .. } = scene.camera.projection {
+    if let Projection::Perspective { fov_deg, principal_point_offset, .. }
+    | Projection::ThinLens { fov_deg, principal_point_offset, .. } = scene.camera.projection
+    {
         if !(fov_deg > 0.0 && fov_deg < 180.0) {
             problems.add(
                 Subject::Camera,
@@ -50,6 +52,15 @@ fn check_camera(scene: &Scene, problems: &mut Problems) {
         if !principal_point_offset.is_finite() {
             problems.add(Subject::Camera, "the principal point's offset must be finite");
         }
+    }
+    if let Projection::ThinLens { aperture_radius, focus_distance, .. } = scene.camera.projection {
+        if !(aperture_radius >= 0.0 && aperture_radius.is_finite()) {
+            problems.add(
+                Subject::Camera,
+                format!("a lens of radius {aperture_radius}: write a number from 0 (all is sharp) upwards"),
+            );
+        }
+        positive(focus_distance, "distance in focus", Subject::Camera, problems);
     }
 }
 
@@ -178,6 +189,14 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
         if let Some(emission) = shape.emission {
             if shape.geometry == Geometry::Plane {
                 problems.add(subject, "an infinite plane cannot emit: its power has no end; use a rectangle");
+            }
+            if scene.materials.contains(shape.material)
+                && matches!(scene.materials[shape.material], Material::Mask { .. })
+            {
+                problems.add(
+                    subject,
+                    "a masked shape cannot emit: give the light to a shape without a mask, and shape it by a texture of its radiance",
+                );
             }
             check_emission(scene, emission, subject, problems);
         }
@@ -311,6 +330,7 @@ mod tests {
     use crate::handle::Arena;
     use crate::light::Light;
     use crate::math::{Affine2, DVec3, Vec2};
+    use crate::shape::Shape;
     use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
 
     fn empty() -> Scene {
@@ -335,6 +355,29 @@ mod tests {
     }
 
     #[test]
+    fn a_masked_shape_that_emits_is_refused() {
+        let mut scene = empty();
+        let white = scene.textures.constant(Rgb::WHITE);
+        let inside = scene.materials.push(Material::Diffuse { reflectance: white });
+        let material = scene.materials.push(Material::Mask { opacity: white, inside });
+        let shape = Shape {
+            name: String::new(),
+            geometry: Geometry::Rectangle,
+            to_world: Transform::IDENTITY,
+            material,
+            emission: Some(white),
+            flip_normals: false,
+        };
+        scene.shapes.push(shape);
+        assert_eq!(
+            messages(&scene),
+            [
+                "a masked shape cannot emit: give the light to a shape without a mask, and shape it by a texture of its radiance"
+            ]
+        );
+    }
+
+    #[test]
     fn a_light_with_a_negative_pixel_or_a_sheared_frame_is_refused() {
         let mut scene = empty();
         let image = scene.textures.images.push(Image::filled(1, 1, Rgb::splat(-1.0)));
@@ -356,6 +399,29 @@ mod tests {
                 "a pixel of its light's texture is negative: light cannot be",
             ]
         );
+    }
+
+    #[test]
+    fn a_lens_has_a_radius_and_a_distance_in_focus() {
+        let mut scene = empty();
+        let thin_lens = |aperture_radius, focus_distance| Projection::ThinLens {
+            fov_deg: 200.0,
+            fov_axis: FovAxis::X,
+            principal_point_offset: Vec2::ZERO,
+            aperture_radius,
+            focus_distance,
+        };
+        scene.camera.projection = thin_lens(-1.0, 0.0);
+        assert_eq!(
+            messages(&scene),
+            [
+                "a field of view of 200 degrees: write one between 0 and 180",
+                "a lens of radius -1: write a number from 0 (all is sharp) upwards",
+                "a distance in focus of 0: write a positive number",
+            ]
+        );
+        scene.camera.projection = thin_lens(f32::NAN, f32::INFINITY);
+        assert_eq!(messages(&scene).len(), 3);
     }
 
     #[test]

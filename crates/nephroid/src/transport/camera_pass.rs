@@ -76,10 +76,10 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
                 for index in pass.first_sample..pass.first_sample + pass.samples {
                     let mut sampler = Sampler::new(Sequence::Sobol, key, u64::from(index));
                     let offset = filter.sample(sampler.next_2d());
-                    // The lens's two numbers, so that later sets of four stay aligned.
-                    sampler.next_2d();
+                    // Drawn without a lens, too, so that later sets of four stay aligned.
+                    let u_lens = sampler.next_2d();
                     let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
-                    let ray = world.camera().ray(position);
+                    let ray = world.camera().ray(position, u_lens);
                     let sample = PixelSample { ray, key, index, sampler };
                     sum.add(estimate(sample, scratch, &mut total), offset.weight);
                 }

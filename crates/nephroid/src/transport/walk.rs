@@ -165,7 +165,8 @@ pub(super) fn walk(
             let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
             let photon = Photon {
                 position: hit.point.position,
-                power,
+                // A mask lets some photons pass, and those that land stand for them.
+                power: power / world.opacity(&hit),
                 wi: wo,
                 normal,
                 depth: u16::try_from(depth).unwrap_or(u16::MAX),

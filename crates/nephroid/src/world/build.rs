@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
-use crate::shape::{Geometry, Mesh, Primitive};
+use crate::shape::{Geometry, Mesh, Primitive, Shape};
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -43,8 +43,7 @@ impl World {
         let (emitters, emitter_of_shape) = emitters(&scene, &pieces, Target { center, radius });
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
-        let invisible =
-            scene.shapes.iter().map(|s| matches!(scene.materials[s.material], Material::Null)).collect();
+        let (invisible, masked) = transparency(&scene);
         Ok(Self {
             scene,
             meshes,
@@ -53,6 +52,7 @@ impl World {
             in_tree,
             bvh,
             invisible,
+            masked,
             emitters,
             by_power,
             for_direct,
@@ -61,6 +61,19 @@ impl World {
             bounds,
         })
     }
+}
+
+/// For each shape, whether light passes it anyway, and whether it passes by chance; the latter empty where
+/// no shape is masked.
+fn transparency(scene: &Scene) -> (Vec<bool>, Vec<bool>) {
+    let materials = &scene.materials;
+    let each = |shape: &Shape| {
+        let inside = Material::unmasked(materials, shape.material);
+        let invisible = materials[inside] == Material::Null;
+        (invisible, inside != shape.material && !invisible)
+    };
+    let (invisible, masked): (Vec<bool>, Vec<bool>) = scene.shapes.iter().map(each).unzip();
+    (invisible, if masked.contains(&true) { masked } else { Vec::new() })
 }
 
 /// World-space meshes, and the primitives of each shape.

@@ -2,6 +2,9 @@
 //! and nothing that is done with it can fail.
 
 mod build;
+mod cutout;
+#[cfg(test)]
+mod cutout_tests;
 
 use crate::bvh::Bvh;
 use crate::camera::CameraRays;
@@ -28,6 +31,8 @@ pub struct World {
     bvh: Bvh,
     /// Whether light passes a shape as if it were not there.
     invisible: Vec<bool>,
+    /// Whether each shape has a mask; empty if none has.
+    masked: Vec<bool>,
     emitters: Vec<Emitter>,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
@@ -112,7 +117,7 @@ impl World {
         let mut nearest: Option<(usize, Intersection)> = None;
         let mut test = |range: std::ops::Range<usize>, ray: &mut Ray| {
             for i in range {
-                if let Some(hit) = self.primitives[i].intersect(ray, &sheared) {
+                if let Some(hit) = self.meet(i, ray, &sheared) {
                     ray.t_max = hit.t;
                     nearest = Some((i, hit));
                 }
@@ -135,8 +140,7 @@ impl World {
         let mut test = |range: std::ops::Range<usize>, ray: &mut Ray| {
             blocked = blocked
                 || range.into_iter().any(|i| {
-                    !self.invisible[self.owner[i] as usize]
-                        && self.primitives[i].intersect(ray, &sheared).is_some()
+                    !self.invisible[self.owner[i] as usize] && self.meet(i, ray, &sheared).is_some()
                 });
             blocked
         };
@@ -193,6 +197,7 @@ fn is_dirac(materials: &Arena<Material>, material: Handle<Material>) -> bool {
     match materials[material] {
         Material::Conductor { .. } | Material::Dielectric { .. } | Material::ThinDielectric { .. } => true,
         Material::TwoSided { front, back } => is_dirac(materials, front) || is_dirac(materials, back),
+        Material::Mask { inside, .. } => is_dirac(materials, inside),
         Material::Diffuse { .. } | Material::Phong { .. } | Material::Null => false,
     }
 }

@@ -150,3 +150,29 @@ fn two_sided() {
         "front refers to a material that does not exist",
     );
 }
+
+#[test]
+fn masks() {
+    let mut w = Workshop::new();
+    let (white, black) = (w.textures.constant(Rgb::WHITE), w.textures.constant(Rgb::BLACK));
+    let diffuse = w.accepts(Material::Diffuse { reflectance: white });
+    let mask = w.accepts(Material::Mask { opacity: black, inside: diffuse });
+    w.accepts(Material::Mask { opacity: white, inside: mask });
+    for (value, shown) in [(1.5, "1.5"), (-0.1, "-0.1"), (f32::NAN, "(NaN, NaN, NaN)")] {
+        let opacity = w.textures.constant(Rgb::splat(value));
+        w.rejects(
+            Material::Mask { opacity, inside: diffuse },
+            &format!("opacity is {shown}, but must be between 0 (not there) and 1 (not masked)"),
+        );
+    }
+    w.rejects(
+        Material::TwoSided { front: mask, back: diffuse },
+        "front is a mask, which cuts out both sides; put the two-sided material into the mask",
+    );
+    let mut longer = w.materials.clone();
+    let itself = longer.push(Material::Null);
+    w.rejects(
+        Material::Mask { opacity: white, inside: itself },
+        "inside refers to the material itself or a later one; store what it refers to first",
+    );
+}

@@ -107,6 +107,8 @@ impl Zoo {
         self.add("phong before mirror", Material::TwoSided { front: phong, back: mirror });
         let nested = self.materials.push(Material::TwoSided { front: mirror, back: phong });
         self.add("mirror before diffuse, nested", Material::TwoSided { front: nested, back: paper });
+        let opacity = self.grey(0.3);
+        self.add("phong under a mask", Material::Mask { opacity, inside: phong });
     }
 
     fn grey(&mut self, value: f32) -> Handle<Texture> {
@@ -192,8 +194,9 @@ fn the_zoo_has_every_material() {
         Material::ThinDielectric { .. } => 4,
         Material::TwoSided { .. } => 5,
         Material::Null => 6,
+        Material::Mask { .. } => 7,
     };
-    for wanted in 0..=6 {
+    for wanted in 0..=7 {
         assert!(zoo.cases.iter().any(|case| kind(&zoo.materials[case.material]) == wanted), "{wanted}");
     }
 }
