@@ -161,18 +161,18 @@ fn cornell() {
             );
         }
     }
-    let mut hits = 0;
+    let (mut hits, mut met, mut stopped) = (0, 0, 0);
     let times = rounds(
         ROUNDS,
         &mut [
             &mut || hits = rays.iter().filter(|ray| world.nearest(ray).is_some()).count(),
-            &mut || hits = rays.iter().filter(|ray| world.intersect(ray).is_some()).count(),
-            &mut || hits = rays.iter().filter(|ray| world.occluded(ray)).count(),
+            &mut || met = rays.iter().filter(|ray| world.intersect(ray).is_some()).count(),
+            &mut || stopped = rays.iter().filter(|ray| world.occluded(ray)).count(),
         ],
     );
     let rate = |time: f64| rays.len() as f64 / time * 1e-6;
     println!(
-        "Cornell box, Mray/CPU s: nearest {:.2}, with the surface {:.2}, any hit {:.2} ({hits} of {} hit)",
+        "Cornell box, Mray/CPU s: nearest {:.2}, with the surface {:.2}, any hit {:.2} ({hits} {met} {stopped} of {} hit)",
         rate(times[0]),
         rate(times[1]),
         rate(times[2]),

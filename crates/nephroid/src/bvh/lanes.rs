@@ -25,8 +25,10 @@ pub(crate) trait Lanes: Copy {
     fn eq(self, other: Self) -> u32;
 }
 
-/// Something to be done with either kind of lanes. Implementations of `run` must be `inline(always)`, or
-/// the instructions are not those that were asked for.
+/// Something to be done with either kind of lanes.
+///
+/// What handles lanes, in `run` and below, must be functions that are `inline(always)`, and no closures: else
+/// it is compiled without the instructions that were asked for.
 pub(crate) trait Work {
     type Output;
     fn run<L: Lanes>(self) -> Self::Output;
@@ -62,13 +64,27 @@ impl Simd {
 }
 
 #[inline(always)]
-fn each(f: impl FnMut(usize) -> f32) -> [f32; LANES] {
-    std::array::from_fn(f)
+fn each(f: impl Fn(usize) -> f32) -> [f32; LANES] {
+    let mut out = [0.0; LANES];
+    for (i, x) in out.iter_mut().enumerate() {
+        *x = f(i);
+    }
+    out
 }
 
 #[inline(always)]
 fn bits(f: impl Fn(usize) -> bool) -> u32 {
-    (0..LANES).fold(0, |mask, i| mask | u32::from(f(i)) << i)
+    let mut mask = 0;
+    for i in 0..LANES {
+        mask |= u32::from(f(i)) << i;
+    }
+    mask
+}
+
+/// One number in all lanes, for each of three.
+#[inline(always)]
+pub(crate) fn splat3<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
 }
 
 impl Lanes for [f32; LANES] {

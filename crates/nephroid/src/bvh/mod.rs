@@ -8,7 +8,8 @@ mod build;
 mod lanes;
 mod traverse;
 
-pub(crate) use lanes::{LANES, Lanes, Simd, Work};
+pub(crate) use lanes::{LANES, Lanes, Simd, Work, splat3};
+pub(crate) use traverse::Visitor;
 
 /// A tree over items that the owner keeps in leaves as [`Tree::build`] asks for them.
 #[derive(Clone, Debug)]

@@ -1,5 +1,5 @@
-use super::{Child, Kind, LANES, Lanes, Node, Tree};
-use crate::math::{Ray, gamma};
+use super::{Child, Kind, LANES, Lanes, Node, Tree, splat3};
+use crate::math::{Ray, Vec3, gamma};
 
 /// Entries of the stack. Trees that need more are built otherwise.
 pub(super) const STACK: usize = 192;
@@ -19,26 +19,28 @@ struct Slabs<L> {
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
-        let inverse = ray.direction.to_array().map(|d| 1.0 / d);
+        let inverse = (Vec3::ONE / ray.direction).to_array();
         Self {
-            origin: ray.origin.to_array().map(L::splat),
-            inverse: inverse.map(L::splat),
+            origin: splat3(ray.origin.to_array()),
+            inverse: splat3(inverse),
             upper_first: inverse.map(|i| usize::from(i.is_sign_negative())),
         }
+    }
+
+    /// Where the ray comes to a side of the boxes.
+    #[inline(always)]
+    fn side(&self, node: &Node, axis: usize, upper: usize) -> L {
+        L::load(&node.sides[axis][upper & 1]).minus(self.origin[axis]).times(self.inverse[axis])
     }
 
     /// Which boxes the ray meets before `t_max`, and where it enters each.
     #[inline(always)]
     fn meet(&self, node: &Node, t_max: f32) -> (u32, L) {
-        let side = |axis: usize, upper: usize| {
-            let plane = L::load(&node.sides[axis][upper & 1]);
-            plane.minus(self.origin[axis]).times(self.inverse[axis])
-        };
         // Where a ray runs inside the plane of a face, 0 · ∞ is not a number, and the other counts.
         let (mut near, mut far) = (L::splat(0.0), L::splat(t_max));
         for axis in 0..3 {
-            near = side(axis, self.upper_first[axis]).larger(near);
-            far = side(axis, 1 - self.upper_first[axis]).smaller(far);
+            near = self.side(node, axis, self.upper_first[axis]).larger(near);
+            far = self.side(node, axis, 1 - self.upper_first[axis]).smaller(far);
         }
         (near.le(far.times(L::splat(SLACK))), near)
     }
@@ -51,16 +53,22 @@ fn entry(near: f32, child: Child) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child.0)
 }
 
+/// Who goes through a tree.
+pub(crate) trait Visitor {
+    /// Takes the kind and number of a leaf and the end of the ray, which it may bring nearer; ends the
+    /// traversal by returning true.
+    fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool;
+}
+
 impl Tree {
     /// Visits the leaves whose boxes the ray meets, near ones first unless `ANY` leaf may come first.
-    /// `visit` takes the kind and number of a leaf and the end of the ray, which it may bring nearer,
-    /// and ends the traversal by returning true; whether it did is returned.
+    /// Returns whether the visitor ended the traversal.
     #[inline(always)]
     pub fn traverse<L: Lanes, const ANY: bool>(
         &self,
         ray: &Ray,
         t_max: &mut f32,
-        mut visit: impl FnMut(Kind, usize, &mut f32) -> bool,
+        visitor: &mut impl Visitor,
     ) -> bool {
         if self.root == Child::NONE {
             return false;
@@ -72,7 +80,7 @@ impl Tree {
         loop {
             let (kind, number) = at.unpack();
             if let Some(kind) = kind {
-                if visit(kind, number, t_max) {
+                if visitor.visit(kind, number, t_max) {
                     return true;
                 }
             } else {
@@ -131,7 +139,7 @@ impl Tree {
 mod tests {
     use super::super::{Simd, Work};
     use super::*;
-    use crate::math::{Bounds, Vec3, warp};
+    use crate::math::{Bounds, warp};
     use crate::sampling::{Key, Sampler, Sequence, Stream};
 
     fn sampler(i: u64) -> Sampler {
@@ -141,16 +149,22 @@ mod tests {
     /// The items of all leaves that a ray comes to.
     struct Visited<'a>(&'a Tree, &'a [Vec<u32>], Ray);
 
+    struct Found<'a>(&'a [Vec<u32>], Vec<u32>);
+
+    impl Visitor for Found<'_> {
+        fn visit(&mut self, _: Kind, leaf: usize, _: &mut f32) -> bool {
+            self.1.extend(&self.0[leaf]);
+            false
+        }
+    }
+
     impl Work for Visited<'_> {
         type Output = Vec<u32>;
         #[inline(always)]
         fn run<L: Lanes>(self) -> Vec<u32> {
-            let mut found = Vec::new();
-            self.0.traverse::<L, false>(&self.2, &mut self.2.t_max.clone(), |_, leaf, _| {
-                found.extend(&self.1[leaf]);
-                false
-            });
-            found
+            let mut found = Found(self.1, Vec::new());
+            self.0.traverse::<L, false>(&self.2, &mut self.2.t_max.clone(), &mut found);
+            found.1
         }
     }
 

@@ -1,6 +1,6 @@
 use super::flat::{Flat, Region};
 use super::triangles::Hits;
-use crate::bvh::{LANES, Lanes};
+use crate::bvh::{LANES, Lanes, splat3};
 use crate::math::{Ray, Vec3};
 
 /// Up to eight parallelograms and ellipses, tested at once.
@@ -51,18 +51,16 @@ impl FlatBlock {
     /// What [`Flat::intersect`] gives for each, to the bit.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &Ray, t_max: f32) -> Hits {
-        let three = |v: &[[f32; LANES]; 3]| [L::load(&v[0]), L::load(&v[1]), L::load(&v[2])];
-        let dot = |a: &[L; 3], b: &[L; 3]| a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]));
-        let minus = |a: &[L; 3], b: &[L; 3]| [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])];
-        let origin = ray.origin.to_array().map(L::splat);
-        let direction = ray.direction.to_array().map(L::splat);
+        let origin = splat3::<L>(ray.origin.to_array());
+        let direction = splat3::<L>(ray.direction.to_array());
         let (center, normal) = (three(&self.center), three(&self.normal));
         let t = dot(&minus(&center, &origin), &normal).over(dot(&direction, &normal));
         let ahead = L::splat(0.0).lt(t) & t.lt(L::splat(t_max));
         if ahead == 0 {
             return Hits::NONE;
         }
-        let at = [0, 1, 2].map(|i| origin[i].plus(direction[i].times(t)));
+        let [o, d] = [&origin, &direction];
+        let at = [o[0].plus(d[0].times(t)), o[1].plus(d[1].times(t)), o[2].plus(d[2].times(t))];
         let q = minus(&at, &center);
         let (x, y) = (dot(&q, &three(&self.dual_x)), dot(&q, &three(&self.dual_y)));
         let limit = L::load(&self.limit);
@@ -74,4 +72,19 @@ impl FlatBlock {
         let mask = ahead & inside;
         if mask == 0 { Hits::NONE } else { Hits::new(mask, t, x, y) }
     }
+}
+
+#[inline(always)]
+fn three<L: Lanes>(v: &[[f32; LANES]; 3]) -> [L; 3] {
+    [L::load(&v[0]), L::load(&v[1]), L::load(&v[2])]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
+}
+
+#[inline(always)]
+fn minus<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
+    [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
 }

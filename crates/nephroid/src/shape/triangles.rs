@@ -1,6 +1,6 @@
 use super::triangle::Triangle;
 use super::{Intersection, Mesh, ShearedRay};
-use crate::bvh::{LANES, Lanes};
+use crate::bvh::{LANES, Lanes, splat3};
 use crate::math::{Ray, Vec3};
 
 /// Up to eight triangles, tested at once.
@@ -56,10 +56,28 @@ impl<L: Lanes> ShearedLanes<L> {
     pub fn new(ray: &Ray, sheared: &ShearedRay) -> Self {
         Self {
             axes: sheared.axes,
-            origin: sheared.axes.map(|axis| L::splat(ray.origin[axis])),
-            shear: sheared.shear.to_array().map(L::splat),
+            origin: splat3(sheared.axes.map(|axis| ray.origin[axis])),
+            shear: splat3(sheared.shear.to_array()),
         }
     }
+}
+
+impl<L: Lanes> ShearedLanes<L> {
+    /// One corner of each triangle, in the space of the ray.
+    #[inline(always)]
+    fn corner(&self, p: &[[f32; LANES]; 3]) -> [L; 3] {
+        let [kx, ky, kz] = self.axes;
+        let z = L::load(&p[kz]).minus(self.origin[2]);
+        let x = L::load(&p[kx]).minus(self.origin[0]).minus(self.shear[0].times(z));
+        let y = L::load(&p[ky]).minus(self.origin[1]).minus(self.shear[1].times(z));
+        [x, y, z]
+    }
+}
+
+/// On which side of an edge the ray passes; of the edge the other way round exactly the negative.
+#[inline(always)]
+fn edge<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+    a[0].times(b[1]).minus(a[1].times(b[0]))
 }
 
 impl TriangleBlock {
@@ -89,19 +107,8 @@ impl TriangleBlock {
         lanes: &ShearedLanes<L>,
         t_max: f32,
     ) -> Hits {
-        let [kx, ky, kz] = lanes.axes;
-        let [sx, sy, sz] = lanes.shear;
-        let [ox, oy, oz] = lanes.origin;
-        let corner = |vertex: usize| {
-            let p = &self.p[vertex];
-            let z = L::load(&p[kz]).minus(oz);
-            let x = L::load(&p[kx]).minus(ox).minus(sx.times(z));
-            let y = L::load(&p[ky]).minus(oy).minus(sy.times(z));
-            [x, y, z]
-        };
-        let q = [corner(0), corner(1), corner(2)];
-        let edge = |a: [L; 3], b: [L; 3]| a[0].times(b[1]).minus(a[1].times(b[0]));
-        let w = [edge(q[2], q[1]), edge(q[0], q[2]), edge(q[1], q[0])];
+        let q = [lanes.corner(&self.p[0]), lanes.corner(&self.p[1]), lanes.corner(&self.p[2])];
+        let w = [edge(&q[2], &q[1]), edge(&q[0], &q[2]), edge(&q[1], &q[0])];
         let zero = L::splat(0.0);
         let least = w[0].smaller(w[1]).smaller(w[2]);
         let most = w[0].larger(w[1]).larger(w[2]);
@@ -111,7 +118,8 @@ impl TriangleBlock {
             return Hits::NONE;
         }
         let determinant = w[0].plus(w[1]).plus(w[2]);
-        let scaled = w[0].times(q[0][2]).plus(w[1].times(q[1][2])).plus(w[2].times(q[2][2])).times(sz);
+        let scaled =
+            w[0].times(q[0][2]).plus(w[1].times(q[1][2])).plus(w[2].times(q[2][2])).times(lanes.shear[2]);
         let inverse = L::splat(1.0).over(determinant);
         let t = scaled.times(inverse);
         let mask = inside & !on_edge & zero.lt(t) & t.lt(L::splat(t_max));

@@ -1,4 +1,4 @@
-use crate::bvh::{Kind, Lanes, Tree};
+use crate::bvh::{Kind, Lanes, Tree, Visitor};
 use crate::math::{Bounds, Ray};
 use crate::shape::{FlatBlock, Hits, Intersection, Mesh, Primitive, ShearedLanes, ShearedRay, TriangleBlock};
 
@@ -118,25 +118,45 @@ impl Level {
                 return true;
             }
         }
-        self.tree.traverse::<L, ANY>(ray, t_max, |kind, number, t_max| match kind {
+        let mut leaves = Leaves::<L, _, ANY> { level: self, primitives, ray, sheared, lanes, searcher };
+        self.tree.traverse::<L, ANY>(ray, t_max, &mut leaves)
+    }
+}
+
+/// The leaves of a level, as a ray comes to them.
+struct Leaves<'a, L, S, const ANY: bool> {
+    level: &'a Level,
+    primitives: &'a [Primitive],
+    ray: &'a Ray,
+    sheared: ShearedRay,
+    lanes: ShearedLanes<L>,
+    searcher: &'a mut S,
+}
+
+impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
+    #[inline(always)]
+    fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool {
+        match kind {
             Kind::Triangles => {
-                let block = &self.triangles[number];
-                let hits = block.intersect::<L>(ray, &sheared, &lanes, *t_max);
-                take::<ANY>(hits, t_max, searcher, |i| Item::Triangle {
+                let block = &self.level.triangles[number];
+                let hits = block.intersect::<L>(self.ray, &self.sheared, &self.lanes, *t_max);
+                take::<ANY>(hits, t_max, self.searcher, |i| Item::Triangle {
                     shape: block.shape[i],
                     index: block.index[i],
                 })
             }
             Kind::Flats => {
-                let block = &self.flats[number];
-                let hits = block.intersect::<L>(ray, *t_max);
-                take::<ANY>(hits, t_max, searcher, |i| Item::Other(Other::Primitive(block.index[i])))
+                let block = &self.level.flats[number];
+                let hits = block.intersect::<L>(self.ray, *t_max);
+                take::<ANY>(hits, t_max, self.searcher, |i| Item::Other(Other::Primitive(block.index[i])))
             }
-            Kind::Other => match self.others[number] {
-                Other::Primitive(p) => single::<ANY>(primitives, p, ray, &sheared, t_max, searcher),
-                Other::Instance(i) => searcher.instance::<L, ANY>(i, t_max),
+            Kind::Other => match self.level.others[number] {
+                Other::Primitive(p) => {
+                    single::<ANY>(self.primitives, p, self.ray, &self.sheared, t_max, self.searcher)
+                }
+                Other::Instance(i) => self.searcher.instance::<L, ANY>(i, t_max),
             },
-        })
+        }
     }
 }
 
