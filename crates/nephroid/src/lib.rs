@@ -50,7 +50,7 @@
 //! - Colours are linear RGB with the primaries of sRGB.
 //! - No length is built in: a scene scaled by a power of two gives the same picture.
 //!
-//! Participating media, rough metals and glass, depth of field and instances are not there yet.
+//! Participating media, rough metals and glass and depth of field are not there yet.
 
 mod bvh;
 pub mod camera;

@@ -2,7 +2,7 @@ use super::{Child, Kind, LANES, Lanes, Node, Tree, splat3};
 use crate::math::{Ray, Vec3, gamma};
 
 /// Entries of the stack. Trees that need more are built otherwise.
-pub(super) const STACK: usize = 192;
+pub(super) const STACK: usize = 128;
 
 /// What widens the far end of an interval of distances by more than their rounding, so that nothing is
 /// lost (Ize 2013, *Robust BVH Ray Traversal*, JCGT 2(2)).
@@ -100,20 +100,16 @@ impl Tree {
                         let lane = mask.trailing_zeros() as usize % LANES;
                         mask &= mask - 1;
                         let mut other = entry(near[lane], node.children[lane]);
-                        if !ANY {
-                            if other < nearest {
-                                std::mem::swap(&mut other, &mut nearest);
-                            }
-                            // Farther ones lie deeper.
-                            let mut place = held;
-                            while place > bottom && stack[place - 1] < other {
-                                stack[place] = stack[place - 1];
-                                place -= 1;
-                            }
-                            stack[place] = other;
-                        } else {
-                            stack[held] = other;
+                        if other < nearest {
+                            std::mem::swap(&mut other, &mut nearest);
                         }
+                        // Farther ones lie deeper. Where any hit will do, only the nearest matters.
+                        let mut place = held;
+                        while !ANY && place > bottom && stack[place - 1] < other {
+                            stack[place] = stack[place - 1];
+                            place -= 1;
+                        }
+                        stack[place] = other;
                         held += 1;
                     }
                     at = Child(nearest as u32);
