@@ -28,6 +28,9 @@ pub(super) enum Content {
 /// saves little when tracing.
 const REINSERTION: f32 = 0.02;
 
+/// The part of these that each round takes.
+const ROUNDS: [f32; 6] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0, 1.0 / 17.0, 1.0 / 31.0];
+
 impl Binary {
     /// By locally ordered clustering, then reinsertion, as `obvhs` does them on one thread. There must
     /// be at least one box, and none may be empty.
@@ -38,7 +41,7 @@ impl Binary {
         let indices = (0..boxes.len() as u32).collect();
         let mut tree =
             PlocBuilder::new().build(PlocSearchDistance::Low, &scaled, indices, SortPrecision::U64, 2);
-        ReinsertionOptimizer::default().run(&mut tree, REINSERTION, None);
+        ReinsertionOptimizer::default().run(&mut tree, REINSERTION, Some(ROUNDS.to_vec()));
 
         let mut nodes = Vec::with_capacity(tree.nodes.len());
         // Where the parent waits for the number of this child.

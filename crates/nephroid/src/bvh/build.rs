@@ -40,6 +40,9 @@ impl Tree {
         }
         let mut children = Vec::with_capacity(LANES);
         plan.children(at, LANES, &mut children);
+        // Large ones first: see `Tree::traverse`.
+        let area = |&child: &u32| plan.binary.nodes[child as usize].area;
+        children.sort_by(|a, b| area(b).total_cmp(&area(a)));
         let number = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         for (lane, &child) in children.iter().enumerate() {

@@ -93,6 +93,17 @@ impl Tree {
                         at = node.children[first];
                         continue;
                     }
+                    if ANY {
+                        // Large boxes come first in a node: what is in them stops the ray most likely.
+                        at = node.children[first];
+                        while mask != 0 {
+                            let lane = mask.ilog2() as usize % LANES;
+                            mask ^= 1 << lane;
+                            stack[held] = entry(0.0, node.children[lane]);
+                            held += 1;
+                        }
+                        continue;
+                    }
                     let near = near.store();
                     let bottom = held;
                     let mut nearest = entry(near[first], node.children[first]);
@@ -103,9 +114,9 @@ impl Tree {
                         if other < nearest {
                             std::mem::swap(&mut other, &mut nearest);
                         }
-                        // Farther ones lie deeper. Where any hit will do, only the nearest matters.
+                        // Farther ones lie deeper.
                         let mut place = held;
-                        while !ANY && place > bottom && stack[place - 1] < other {
+                        while place > bottom && stack[place - 1] < other {
                             stack[place] = stack[place - 1];
                             place -= 1;
                         }
