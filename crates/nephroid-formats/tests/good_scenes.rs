@@ -12,7 +12,7 @@ use nephroid::math::{Vec2, Vec3};
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::{BitmapFilter, Texture, Wrap};
-use nephroid_formats::diagnostic::Severity;
+use nephroid_formats::diagnostic::{Location, Severity};
 use nephroid_formats::mitsuba::{Options, ParameterValue, SceneFile, read_scene, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
 
@@ -215,7 +215,7 @@ fn groups_are_stored_once_and_shown_by_instances() {
     assert_eq!(groups[instances[2].group].shapes[0].geometry, Geometry::Cube);
     assert_eq!(instances[0].to_world.point(Vec3::ZERO), Vec3::new(0.0, 3.0, 0.0));
     // First the scene's own shapes, then those of the groups in their order.
-    let lines: Vec<usize> = file.origins.shapes.iter().map(|at| at.line()).collect();
+    let lines: Vec<usize> = file.origins.shapes.iter().map(Location::line).collect();
     assert_eq!(lines, [3, 5, 6, 9]);
     assert_eq!((file.origins.groups.len(), file.origins.instances.len()), (2, 3));
 }

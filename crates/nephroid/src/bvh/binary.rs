@@ -2,7 +2,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use crate::math::{Bounds, Vec3};
+use crate::math::Bounds;
 
 /// A binary tree with one item to a leaf.
 pub(super) struct Binary {
@@ -58,12 +58,16 @@ impl Binary {
                 let item = tree.primitive_indices[node.first_index as usize];
                 nodes.push(BinaryNode::new(boxes[item as usize], scale, Content::Item(item)));
             } else {
-                // Division by a power of two brings back the very numbers.
-                let (min, max) = (Vec3::from(node.aabb().min), Vec3::from(node.aabb().max));
-                let bounds = Bounds { min: min / scale, max: max / scale };
-                nodes.push(BinaryNode::new(bounds, scale, Content::Inner([0; 2])));
+                let area = 2.0 * node.aabb().half_area();
+                nodes.push(BinaryNode { bounds: Bounds::EMPTY, area, content: Content::Inner([0; 2]) });
                 waiting.push((node.first_index + 1, Some((at, 1))));
                 waiting.push((node.first_index, Some((at, 0))));
+            }
+        }
+        // From the boxes themselves, as scaled ones may have been rounded.
+        for at in (0..nodes.len()).rev() {
+            if let Content::Inner([left, right]) = nodes[at].content {
+                nodes[at].bounds = nodes[left as usize].bounds.union(nodes[right as usize].bounds);
             }
         }
         Self { nodes }

@@ -70,7 +70,8 @@ impl Tree {
         t_max: &mut f32,
         visitor: &mut impl Visitor,
     ) -> bool {
-        if self.root == Child::NONE {
+        // Of numbers that are none, or infinite, comes nothing; lanes without a child would be entered.
+        if self.root == Child::NONE || !ray.origin.is_finite() || !ray.direction.is_finite() {
             return false;
         }
         let slabs = Slabs::<L>::new(ray);

@@ -52,13 +52,14 @@ impl Placed {
 
     /// Around all that is in the bounds, and the rounding of rays.
     pub fn bounds(&self, local: Bounds) -> Bounds {
-        let ends = [local.min.as_dvec3(), local.max.as_dvec3()];
+        let m = &self.to_world.matrix3;
+        let (low, high) = (local.min.as_dvec3(), local.max.as_dvec3());
         let (mut min, mut max) = (self.to_world.translation, self.to_world.translation);
-        for axis in 0..3 {
-            let column = self.to_world.matrix3.col(axis);
-            let (a, b) = (column * ends[0][axis], column * ends[1][axis]);
-            min += a.min(b);
-            max += a.max(b);
+        for (column, low, high) in
+            [(m.x_axis, low.x, high.x), (m.y_axis, low.y, high.y), (m.z_axis, low.z, high.z)]
+        {
+            min += (column * low).min(column * high);
+            max += (column * low).max(column * high);
         }
         let reach = local.min.abs().max(local.max.abs());
         let slack = (self.growth * reach.as_dvec3()).as_vec3() * gamma(4);

@@ -179,6 +179,24 @@ fn the_tree_finds_what_trying_every_primitive_finds() {
 }
 
 #[test]
+fn rays_of_no_numbers_meet_nothing_and_do_no_harm() {
+    let mut scene = zoo();
+    scene.shapes.retain(|shape| shape.geometry != Geometry::Plane);
+    let world = World::new(scene).unwrap();
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for axis in 0..3 {
+            let mut odd = Vec3::new(0.1, 0.2, 0.3);
+            odd[axis] = bad;
+            for ray in [Ray::new(odd, Vec3::X), Ray::new(Vec3::ZERO, odd)] {
+                assert!(world.nearest(&ray).is_none() && !world.occluded(&ray), "{ray:?}");
+            }
+        }
+    }
+    assert!(world.nearest(&Ray::new(Vec3::ZERO, Vec3::ZERO)).is_none());
+    assert!(world.nearest(&Ray { t_max: f32::NAN, ..Ray::new(Vec3::ZERO, Vec3::X) }).is_none());
+}
+
+#[test]
 fn wide_and_portable_instructions_give_the_same_bits() {
     let mut scene = zoo();
     let shapes = std::mem::take(&mut scene.shapes);
