@@ -109,7 +109,7 @@ fn a_million_rays_at_edges_and_vertices_find_no_gap() {
             let mut world = placed(&mesh, place, as_instance);
             for i in 0..rays_each {
                 let mut s = sampler(i);
-                let corners = mesh.triangles[s.next_1d().mul_add(mesh.triangles.len() as f32, 0.0) as usize];
+                let corners = mesh.triangles[(s.next_1d() * mesh.triangles.len() as f32) as usize];
                 let p = corners.map(|c| place.point(mesh.positions[c as usize]));
                 let a = s.next_1d();
                 let target = if i % 3 == 0 { p[0] } else { p[0] * a + p[1] * (1.0 - a) };
