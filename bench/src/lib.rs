@@ -1,5 +1,7 @@
 //! What the benches share: CPU time, and rounds in which the contestants take turns.
 
+pub mod embree;
+
 use std::time::Duration;
 
 use cpu_time::ProcessTime;

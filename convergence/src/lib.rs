@@ -54,6 +54,8 @@ impl Builder {
                 materials: Arena::default(),
                 meshes: Arena::default(),
                 shapes: Vec::new(),
+                groups: Arena::default(),
+                instances: Vec::new(),
                 lights: Vec::new(),
             },
         }

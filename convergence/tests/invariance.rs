@@ -41,6 +41,8 @@ fn room(scale: f64, place: Transform) -> World {
             materials: Arena::default(),
             meshes: Arena::default(),
             shapes: Vec::new(),
+            groups: Arena::default(),
+            instances: Vec::new(),
             lights: Vec::new(),
         },
     };

@@ -110,7 +110,9 @@ fn world(mesh: Option<Mesh>, material: impl FnOnce(&mut Textures) -> Material) -
     let film = FilmSettings { width: 4, height: 4, crop: None, filter: Filter::Box };
     let (shapes, lights) = (vec![shape], vec![Light { name: "lamp".into(), kind }]);
     let camera = Camera { to_world, projection: Projection::Orthographic };
-    World::new(Scene { camera, film, textures, materials, meshes, shapes, lights }).expect("it is sound")
+    let (groups, instances) = (Arena::default(), Vec::new());
+    World::new(Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights })
+        .expect("it is sound")
 }
 
 /// About 70 000 triangles around the origin, at distances from 0.9 to 1.1.

@@ -15,12 +15,9 @@ const ROUNDS: usize = 7;
 
 fn main() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.xml");
-    let read = read_scene(&DiskFiles, &scene, &Options::default());
-    let world = World::new(read.scene.expect("the scene is sound").scene).expect("and so is its world");
-    let plan = PhotonPlan {
-        global: MapPlan { paths: PATHS, ..MapPlan::default() },
-        ..PhotonPlan::default()
-    };
+    let file = read_scene(&scene, &DiskFiles, &Options::default()).expect("the default scene can be read");
+    let world = World::new(file.scene).expect("the default scene can be rendered");
+    let plan = PhotonPlan { global: MapPlan { paths: PATHS, ..MapPlan::default() }, ..PhotonPlan::default() };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let mut stored = 0;

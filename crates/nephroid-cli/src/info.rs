@@ -102,15 +102,18 @@ fn shapes(scene: &Scene) -> Value {
         Geometry::Plane => "plane",
         Geometry::Mesh(_) => "mesh",
     };
-    let triangles: usize = scene
-        .shapes
-        .iter()
+    let all = || scene.shapes.iter().chain(scene.groups.iter().flat_map(|group| &group.shapes));
+    let triangles: usize = all()
         .map(|shape| match shape.geometry {
             Geometry::Mesh(mesh) => scene.meshes[mesh].triangles.len(),
             _ => 0,
         })
         .sum();
-    let mut about = counted(scene.shapes.iter().map(|shape| kind(&shape.geometry)));
+    let mut about = counted(all().map(|shape| kind(&shape.geometry)));
+    if !scene.groups.is_empty() {
+        about["groups"] = json!(scene.groups.len());
+        about["instances"] = json!(scene.instances.len());
+    }
     about["triangles of meshes"] = json!(triangles);
     about
 }

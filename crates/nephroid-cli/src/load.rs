@@ -73,6 +73,7 @@ pub fn world(scene: Scene, origins: &Origins) -> Result<World, Failure> {
     let mesh_of_shape: Vec<Option<usize>> = scene
         .shapes
         .iter()
+        .chain(scene.groups.iter().flat_map(|group| &group.shapes))
         .map(|shape| match shape.geometry {
             Geometry::Mesh(mesh) => Some(mesh.index()),
             _ => None,
@@ -93,6 +94,8 @@ fn origin<'o>(subject: Subject, origins: &'o Origins, meshes: &[Option<usize>]) 
         Subject::Camera | Subject::Film => Some(&origins.camera),
         Subject::Material(i) => origins.materials.get(i),
         Subject::Shape(i) => origins.shapes.get(i),
+        Subject::Group(i) => origins.groups.get(i),
+        Subject::Instance(i) => origins.instances.get(i),
         Subject::Light(i) => origins.lights.get(i),
         Subject::Mesh(i) => {
             meshes.iter().position(|mesh| *mesh == Some(i)).and_then(|shape| origins.shapes.get(shape))

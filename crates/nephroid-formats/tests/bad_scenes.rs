@@ -728,3 +728,36 @@ fn what_is_not_there_or_not_text() {
     let utf16 = MemoryFiles::default().with("a/s.xml", *b"\xff\xfe<\0");
     assert_eq!(read(&utf16), "a/s.xml:1:1: error: \"a/s.xml\" is UTF-16; save it as UTF-8");
 }
+
+#[test]
+fn groups_and_instances() {
+    check(r#"<shape type="shapegroup" id="g"/>"#, "s.xml:2:14: error: the shapegroup has no shape");
+    check(
+        r#"<shape type="shapegroup" id="g"><shape type="sphere"><emitter type="area"/></shape></shape>
+<shape type="instance"><ref id="g"/></shape>"#,
+        "s.xml:2:46: error: a shape of a shapegroup cannot emit light; put the lamp beside the instances",
+    );
+    check(
+        r#"<shape type="shapegroup" id="a"><shape type="cube"/></shape>
+<shape type="shapegroup" id="b">
+<shape type="instance"><ref id="a"/></shape><ref id="b"/></shape>
+<shape type="instance"><ref id="b"/></shape>"#,
+        r#"s.xml:4:14: error: a shapegroup cannot hold another, nor an instance: "instance"
+s.xml:3:14: error: a shapegroup cannot hold another, nor an instance: "shapegroup"
+s.xml:2:14: warning: no instance shows the shapegroup "a""#,
+    );
+    check(
+        r#"<shape type="instance"/>"#,
+        r#"s.xml:2:14: error: the instance lacks a shapegroup; write <ref id="…"/>"#,
+    );
+    check(
+        r#"<shape type="sphere" id="ball"/>
+<shape type="instance"><ref id="ball"/></shape>"#,
+        r#"s.xml:3:14: error: an instance shows a shapegroup, not "sphere""#,
+    );
+    check(
+        r#"<shape type="shapegroup" id="g"><shape type="cube"/></shape>
+<shape type="instance"><ref id="g"/><bsdf type="null"/></shape>"#,
+        r#"s.xml:3:37: error: <bsdf> has no place in <shape type="instance">"#,
+    );
+}

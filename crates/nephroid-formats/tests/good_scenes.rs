@@ -12,7 +12,7 @@ use nephroid::math::{Vec2, Vec3};
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::{BitmapFilter, Texture, Wrap};
-use nephroid_formats::diagnostic::Severity;
+use nephroid_formats::diagnostic::{Location, Severity};
 use nephroid_formats::mitsuba::{Options, ParameterValue, SceneFile, read_scene, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
 
@@ -218,6 +218,41 @@ fn shapes() {
     assert_eq!((meshes[0].1.normals.len(), meshes[1].1.normals.len()), (4, 0));
     assert_eq!(file.origins.shapes[1].to_string(), "s.xml:3:22");
     assert_eq!(file.origins.shapes.len(), shapes.len());
+}
+
+#[test]
+fn groups_are_stored_once_and_shown_by_instances() {
+    let file = read(
+        r#"<shape type="instance" id="early"><ref id="pair"/><transform name="to_world"><translate y="3"/></transform></shape>
+        <shape type="disk"/>
+        <shape type="shapegroup" id="pair">
+            <shape type="obj"><string name="filename" value="quad.obj"/></shape>
+            <shape type="sphere"><bsdf type="null"/></shape>
+        </shape>
+        <shape type="instance"><ref id="pair"/></shape>
+        <shape type="instance"><shape type="shapegroup"><shape type="cube"/></shape></shape>"#,
+    );
+    let scene = &file.scene;
+    let (groups, instances) = (&scene.groups, &scene.instances);
+    assert_eq!((scene.shapes.len(), groups.len(), instances.len(), scene.meshes.len()), (1, 2, 3, 1));
+    let pair = &groups[instances[0].group];
+    assert_eq!((pair.name.as_str(), pair.shapes.len()), ("pair", 2));
+    assert_eq!(scene.materials[pair.shapes[1].material], Material::Null);
+    assert_eq!((instances[1].group, instances[0].name.as_str()), (instances[0].group, "early"));
+    assert_eq!(groups[instances[2].group].shapes[0].geometry, Geometry::Cube);
+    assert_eq!(instances[0].to_world.point(Vec3::ZERO), Vec3::new(0.0, 3.0, 0.0));
+    // First the scene's own shapes, then those of the groups in their order.
+    let lines: Vec<usize> = file.origins.shapes.iter().map(Location::line).collect();
+    assert_eq!(lines, [3, 5, 6, 9]);
+    assert_eq!((file.origins.groups.len(), file.origins.instances.len()), (2, 3));
+}
+
+#[test]
+fn a_group_without_an_instance_is_warned_about() {
+    let content = r#"<shape type="shapegroup" id="lost"><shape type="disk"/></shape>"#;
+    let file = read_with(content, &files(), &Options::default());
+    let warnings: Vec<String> = file.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, [r#"s.xml:2:14: warning: no instance shows the shapegroup "lost""#]);
 }
 
 #[test]

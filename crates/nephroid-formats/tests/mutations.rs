@@ -20,6 +20,8 @@ const SCENE: &str = r##"<scene version="3.0.0">
 <emitter type="area"><spectrum name="radiance" value="400:1, 700:2"/></emitter></shape>
 <shape type="obj"><string name="filename" value="m.obj"/><bsdf type="mask"><bsdf type="diffuse"><ref name="reflectance" id="board"/></bsdf></bsdf></shape>
 <include filename="part.xml"/>
+<shape type="shapegroup" id="pair"><shape type="cube"/><shape type="disk"><ref id="red"/></shape></shape>
+<shape type="instance"><ref id="pair"/><transform name="to_world"><translate x="2"/></transform></shape>
 <emitter type="directional"><vector name="direction" value="0 -1 0"/></emitter>
 </scene>"##;
 

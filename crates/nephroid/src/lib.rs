@@ -18,8 +18,10 @@
 //! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(4.0 * std::f32::consts::PI) };
 //! let (shapes, lights) = (vec![wall], vec![Light { name: "lamp".into(), kind }]);
 //! let film = FilmSettings { width: 16, height: 16, crop: None, filter: Filter::Box };
-//! let (meshes, camera) = (Arena::default(), Camera { to_world, projection: Projection::Orthographic });
-//! let world = World::new(Scene { camera, film, textures, materials, meshes, shapes, lights }).unwrap();
+//! let (meshes, groups, instances) = (Arena::default(), Arena::default(), Vec::new());
+//! let camera = Camera { to_world, projection: Projection::Orthographic };
+//! let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights };
+//! let world = World::new(scene).unwrap();
 //! let settings = RenderSettings { method: Method::default(), samples_per_pixel: 4, seed: 0 };
 //! let mut session = Session::new(&world, settings, &Silent);
 //! while !session.iteration_is_complete() { session.step(&Silent); }
@@ -48,7 +50,7 @@
 //! - Colours are linear RGB with the primaries of sRGB.
 //! - No length is built in: a scene scaled by a power of two gives the same picture.
 //!
-//! Participating media, rough metals and glass, depth of field and instances are not there yet.
+//! Participating media, rough metals and glass and depth of field are not there yet.
 
 mod bvh;
 pub mod camera;

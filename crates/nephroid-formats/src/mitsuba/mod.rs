@@ -8,6 +8,7 @@
 mod cie1931;
 mod document;
 mod emitter;
+mod group;
 mod integrator;
 mod log;
 mod material;
@@ -70,8 +71,12 @@ pub struct Origins {
     pub scene: Location,
     /// The camera and its film.
     pub camera: Location,
-    /// Each of [`Scene::shapes`].
+    /// Each of [`Scene::shapes`], then each shape of [`Scene::groups`].
     pub shapes: Vec<Location>,
+    /// Each of [`Scene::groups`].
+    pub groups: Vec<Location>,
+    /// Each of [`Scene::instances`].
+    pub instances: Vec<Location>,
     /// Each of [`Scene::lights`].
     pub lights: Vec<Location>,
     /// Each of [`Textures::list`](nephroid::texture::Textures::list): a texture, or the property that is a
@@ -136,6 +141,8 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
         scene: document.root.clone(),
         camera: document.root.clone(),
         shapes: Vec::new(),
+        groups: Vec::new(),
+        instances: Vec::new(),
         lights: Vec::new(),
         textures: Vec::new(),
         images: Vec::new(),
@@ -145,10 +152,12 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let integrator = reader.integrator(&document.elements);
     let sensor = reader.sensor(&document.elements);
     reader.content(&document.elements);
+    reader.warn_of_unused_groups();
     let sensor = sensor?;
-    let Reader { textures, materials, meshes, shapes, lights, origins, .. } = reader;
-    let scene =
-        Scene { camera: sensor.camera, film: sensor.film, textures, materials, meshes, shapes, lights };
+    let Reader { textures, materials, meshes, shapes, groups, instances, lights, mut origins, .. } = reader;
+    origins.shapes.extend(reader.shapes_of_groups);
+    let (camera, film) = (sensor.camera, sensor.film);
+    let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights };
     let sample_count = sensor.sample_count;
     Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })
 }

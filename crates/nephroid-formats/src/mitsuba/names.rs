@@ -71,12 +71,10 @@ pub(super) const SAMPLERS: &[&str] =
 pub(super) const FILTERS_LATER: &[&str] = &["catmullrom", "lanczos"];
 
 pub(super) const SHAPES: &[&str] =
-    &["sphere", "rectangle", "disk", "cylinder", "cube", "obj", "ply", "plane"];
+    &["sphere", "rectangle", "disk", "cylinder", "cube", "obj", "ply", "plane", "shapegroup", "instance"];
 
 pub(super) const SHAPES_LATER: &[&str] = &[
     "serialized",
-    "shapegroup",
-    "instance",
     "sdfgrid",
     "bsplinecurve",
     "linearcurve",

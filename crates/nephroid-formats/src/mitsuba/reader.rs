@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use nephroid::handle::{Arena, Handle};
 use nephroid::light::Light;
 use nephroid::material::Material;
-use nephroid::shape::{Mesh, Shape};
+use nephroid::shape::{Group, Instance, Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
 
 use super::Origins;
@@ -48,10 +48,15 @@ pub(super) struct Reader<'t> {
     pub(super) materials: Arena<Material>,
     pub(super) meshes: Arena<Mesh>,
     pub(super) shapes: Vec<Shape>,
+    pub(super) groups: Arena<Group>,
+    pub(super) instances: Vec<Instance>,
+    /// Where the shapes of groups stand; they count after those of the scene.
+    pub(super) shapes_of_groups: Vec<Location>,
     pub(super) lights: Vec<Light>,
     pub(super) origins: Origins,
     pub(super) texture_of: BTreeMap<usize, Outcome<Texture>>,
     pub(super) material_of: BTreeMap<usize, Outcome<Material>>,
+    pub(super) group_of: BTreeMap<usize, Outcome<Group>>,
     pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Image>>,
     pub(super) mesh_of: BTreeMap<MeshKey, Handle<Mesh>>,
     /// The material of shapes without one, and of lamps without one.
@@ -78,10 +83,14 @@ impl<'t> Reader<'t> {
             materials: Arena::default(),
             meshes: Arena::default(),
             shapes: Vec::new(),
+            groups: Arena::default(),
+            instances: Vec::new(),
+            shapes_of_groups: Vec::new(),
             lights: Vec::new(),
             origins,
             texture_of: BTreeMap::new(),
             material_of: BTreeMap::new(),
+            group_of: BTreeMap::new(),
             image_of: BTreeMap::new(),
             mesh_of: BTreeMap::new(),
             default_materials: [None; 2],

@@ -17,10 +17,26 @@ use crate::mesh::{MeshOptions, read_obj, read_ply};
 impl<'t> Reader<'t> {
     /// Reads a `<shape>` into the scene; what is wrong goes to the log.
     pub(super) fn shape(&mut self, element: &'t Element) {
-        let plugin = self.plugin(element);
+        match element.value_of("type") {
+            Some("shapegroup") => {
+                self.group(element);
+            }
+            Some("instance") => self.instance(element),
+            _ => {
+                let plugin = self.plugin(element);
+                if let Some(shape) = self.surface(&plugin) {
+                    self.origins.shapes.push(plugin.location().clone());
+                    self.shapes.push(shape);
+                }
+            }
+        }
+    }
+
+    /// A surface at its place. `None` if the log says why.
+    pub(super) fn surface(&mut self, plugin: &Plugin<'t>) -> Option<Shape> {
         let geometry = match plugin.kind {
-            "sphere" => self.sphere(&plugin),
-            "cylinder" => self.cylinder(&plugin),
+            "sphere" => self.sphere(plugin),
+            "cylinder" => self.cylinder(plugin),
             "rectangle" => Some(Geometry::Rectangle),
             "disk" => Some(Geometry::Disk),
             "plane" => Some(Geometry::Plane),
@@ -28,14 +44,14 @@ impl<'t> Reader<'t> {
                 plugin.ignore(&["face_normals"]);
                 Some(Geometry::Cube)
             }
-            "obj" | "ply" => self.mesh(&plugin).map(Geometry::Mesh),
+            "obj" | "ply" => self.mesh(plugin).map(Geometry::Mesh),
             kind if SHAPES_LATER.contains(&kind) => {
                 self.left_out(plugin.location(), &format!("shape \"{kind}\""));
-                return;
+                return None;
             }
             _ => {
-                self.unknown_kind(&plugin, &[SHAPES, SHAPES_LATER]);
-                return;
+                self.unknown_kind(plugin, &[SHAPES, SHAPES_LATER]);
+                return None;
             }
         };
         let to_world = plugin.transform("to_world");
@@ -49,16 +65,14 @@ impl<'t> Reader<'t> {
                 self.left_out(&property.location, "the medium that the shape bounds");
             }
         }
-        let emission = self.emission(&plugin);
+        let emission = self.emission(plugin);
         let material = match plugin.only_object("bsdf") {
             Some(bsdf) => self.material(bsdf),
-            None => Some(self.default_material(&plugin, emission.is_some())),
+            None => Some(self.default_material(plugin, emission.is_some())),
         };
         plugin.finish();
-        let (Some(geometry), Some(material)) = (geometry, material) else { return };
-        self.origins.shapes.push(plugin.location().clone());
         let name = plugin.name();
-        self.shapes.push(Shape { name, geometry, to_world, material, emission, flip_normals });
+        Some(Shape { name, geometry: geometry?, to_world, material: material?, emission, flip_normals })
     }
 
     fn sphere(&self, plugin: &Plugin<'t>) -> Option<Geometry> {

@@ -1,28 +1,76 @@
-//! A tree of boxes over primitives.
+//! A tree of boxes, eight children to a node, over items that its owner keeps.
 //!
-//! Binary, built by the surface area heuristic over binned centroids (Wald 2007, *On fast
-//! Construction of SAH-based Bounding Volume Hierarchies*).
+//! Built as a binary tree by the crate `obvhs`, then collapsed so that the expected cost of a ray is
+//! least. Knows no shape.
 
+mod binary;
 mod build;
+mod lanes;
 mod traverse;
 
-use crate::math::Vec3;
+pub(crate) use lanes::{LANES, Lanes, Simd, Work, splat3};
+pub(crate) use traverse::Visitor;
 
-/// A tree over `n` items that the owner keeps in the order [`Bvh::build`] returns.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Bvh {
-    /// Depth first: the left child of an inner node follows it.
+/// A tree over items that the owner keeps in leaves as [`Tree::build`] asks for them.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
     nodes: Vec<Node>,
+    root: Child,
 }
 
+/// Eight boxes and what is in them. A lane that is not used has a box which no ray meets.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
 struct Node {
-    min: Vec3,
-    /// Leaf: first item. Inner node: index of the right child.
-    first: u32,
-    max: Vec3,
-    /// Leaf: number of items. Inner node: 0.
-    count: u16,
-    /// Inner node: the axis its children are split along.
-    axis: u16,
+    /// For each axis the lower sides, then the upper.
+    sides: [[[f32; LANES]; 2]; 3],
+    children: [Child; LANES],
+}
+
+/// What items can be kept together in a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Up to eight triangles.
+    Triangles,
+    /// Up to eight flat shapes.
+    Flats,
+    /// One item of any other kind.
+    Other,
+}
+
+/// A node, or a leaf: its kind in the two highest bits, its number in the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Child(u32);
+
+const NUMBER_BITS: u32 = 30;
+
+impl Child {
+    /// Nothing at all, as a root.
+    const NONE: Self = Self(u32::MAX);
+
+    fn node(number: usize) -> Self {
+        Self(number as u32)
+    }
+
+    fn leaf(kind: Kind, number: u32) -> Self {
+        Self((1 + kind as u32) << NUMBER_BITS | number)
+    }
+
+    #[inline(always)]
+    fn unpack(self) -> (Option<Kind>, usize) {
+        let kind = match self.0 >> NUMBER_BITS {
+            0 => None,
+            1 => Some(Kind::Triangles),
+            2 => Some(Kind::Flats),
+            _ => Some(Kind::Other),
+        };
+        (kind, (self.0 & ((1 << NUMBER_BITS) - 1)) as usize)
+    }
+}
+
+impl Tree {
+    /// Bytes that it takes, without what the leaves hold.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..])
+    }
 }

@@ -1,64 +1,151 @@
-use super::build::MAX_DEPTH;
-use super::{Bvh, Node};
+use super::{Child, Kind, LANES, Lanes, Node, Tree, splat3};
 use crate::math::{Ray, Vec3, gamma};
 
-impl Bvh {
-    /// Visits the items whose boxes the ray meets, near ones first. `visit` takes the range of items
-    /// of a leaf and the ray, may shorten the ray, and ends the traversal by returning true.
-    #[inline]
-    pub fn traverse(&self, ray: &mut Ray, mut visit: impl FnMut(std::ops::Range<usize>, &mut Ray) -> bool) {
-        if self.nodes.is_empty() {
-            return;
+/// Entries of the stack. Trees that need more are built otherwise.
+pub(super) const STACK: usize = 128;
+
+/// What widens the far end of an interval of distances by more than their rounding, so that nothing is
+/// lost (Ize 2013, *Robust BVH Ray Traversal*, JCGT 2(2)).
+const SLACK: f32 = 1.0 + 2.0 * gamma(3);
+
+/// A ray as boxes are tested against it.
+struct Slabs<L> {
+    origin: [L; 3],
+    inverse: [L; 3],
+    /// For each axis whether the upper side of a box is the nearer.
+    upper_first: [usize; 3],
+}
+
+impl<L: Lanes> Slabs<L> {
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        let inverse = (Vec3::ONE / ray.direction).to_array();
+        Self {
+            origin: splat3(ray.origin.to_array()),
+            inverse: splat3(inverse),
+            upper_first: inverse.map(|i| usize::from(i.is_sign_negative())),
         }
-        let inverse = Vec3::ONE / ray.direction;
-        let mut stack = [0u32; MAX_DEPTH];
-        let mut depth = 0;
-        let mut at = 0usize;
-        loop {
-            let node = &self.nodes[at];
-            if node.meets(ray, inverse) {
-                if node.count == 0 {
-                    let (near, far) = if ray.direction[usize::from(node.axis)] < 0.0 {
-                        (node.first as usize, at + 1)
-                    } else {
-                        (at + 1, node.first as usize)
-                    };
-                    stack[depth] = far as u32;
-                    depth += 1;
-                    at = near;
-                    continue;
-                }
-                let first = node.first as usize;
-                if visit(first..first + usize::from(node.count), ray) {
-                    return;
-                }
-            }
-            if depth == 0 {
-                return;
-            }
-            depth -= 1;
-            at = stack[depth] as usize;
+    }
+
+    /// Where the ray comes to a side of the boxes.
+    #[inline(always)]
+    fn side(&self, node: &Node, axis: usize, upper: usize) -> L {
+        L::load(&node.sides[axis][upper & 1]).minus(self.origin[axis]).times(self.inverse[axis])
+    }
+
+    /// Which boxes the ray meets before `t_max`, and where it enters each.
+    #[inline(always)]
+    fn meet(&self, node: &Node, t_max: f32) -> (u32, L) {
+        // Where a ray runs inside the plane of a face, 0 · ∞ is not a number, and the other counts.
+        let (mut near, mut far) = (L::splat(0.0), L::splat(t_max));
+        for axis in 0..3 {
+            near = self.side(node, axis, self.upper_first[axis]).larger(near);
+            far = self.side(node, axis, 1 - self.upper_first[axis]).smaller(far);
         }
+        (near.le(far.times(L::splat(SLACK))), near)
     }
 }
 
-impl Node {
-    /// Slab test, widened by the rounding of the distances so that nothing is lost
-    /// (Ize 2013, *Robust BVH Ray Traversal*, JCGT 2(2)).
-    #[inline]
-    fn meets(&self, ray: &Ray, inverse: Vec3) -> bool {
-        let a = (self.min - ray.origin) * inverse;
-        let b = (self.max - ray.origin) * inverse;
-        // `f32::min` and `max` prefer the number where the other is NaN (0 · ∞): a ray inside the
-        // plane of a face then counts as between the faces.
-        let near = a.x.min(b.x).max(a.y.min(b.y)).max(a.z.min(b.z)).max(0.0);
-        let far = a.x.max(b.x).min(a.y.max(b.y)).min(a.z.max(b.z)).min(ray.t_max);
-        near <= far * (1.0 + 2.0 * gamma(3))
+/// An entry of the stack: where the ray enters above, which child below. As distances are not negative,
+/// entries are in the order of the distances.
+#[inline(always)]
+fn entry(near: f32, child: Child) -> u64 {
+    u64::from(near.to_bits()) << 32 | u64::from(child.0)
+}
+
+/// Who goes through a tree.
+pub(crate) trait Visitor {
+    /// Takes the kind and number of a leaf and the end of the ray, which it may bring nearer; ends the
+    /// traversal by returning true.
+    fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool;
+}
+
+impl Tree {
+    /// Visits the leaves whose boxes the ray meets, near ones first unless `ANY` leaf may come first.
+    /// Returns whether the visitor ended the traversal.
+    #[inline(always)]
+    pub fn traverse<L: Lanes, const ANY: bool>(
+        &self,
+        ray: &Ray,
+        t_max: &mut f32,
+        visitor: &mut impl Visitor,
+    ) -> bool {
+        // Of numbers that are none, or infinite, comes nothing; lanes without a child would be entered.
+        if self.root == Child::NONE || !ray.origin.is_finite() || !ray.direction.is_finite() {
+            return false;
+        }
+        let slabs = Slabs::<L>::new(ray);
+        let mut stack = [0u64; STACK];
+        let mut held = 0;
+        let mut at = self.root;
+        loop {
+            let (kind, number) = at.unpack();
+            if let Some(kind) = kind {
+                if visitor.visit(kind, number, t_max) {
+                    return true;
+                }
+            } else {
+                let node = &self.nodes[number];
+                let (mut mask, near) = slabs.meet(node, *t_max);
+                if mask != 0 {
+                    let first = mask.trailing_zeros() as usize % LANES;
+                    mask &= mask - 1;
+                    if mask == 0 {
+                        at = node.children[first];
+                        continue;
+                    }
+                    if ANY {
+                        // Large boxes come first in a node: what is in them stops the ray most likely.
+                        at = node.children[first];
+                        while mask != 0 {
+                            let lane = mask.ilog2() as usize % LANES;
+                            mask ^= 1 << lane;
+                            stack[held] = entry(0.0, node.children[lane]);
+                            held += 1;
+                        }
+                        continue;
+                    }
+                    let near = near.store();
+                    let bottom = held;
+                    let mut nearest = entry(near[first], node.children[first]);
+                    while mask != 0 {
+                        let lane = mask.trailing_zeros() as usize % LANES;
+                        mask &= mask - 1;
+                        let mut other = entry(near[lane], node.children[lane]);
+                        if other < nearest {
+                            std::mem::swap(&mut other, &mut nearest);
+                        }
+                        // Farther ones lie deeper.
+                        let mut place = held;
+                        while place > bottom && stack[place - 1] < other {
+                            stack[place] = stack[place - 1];
+                            place -= 1;
+                        }
+                        stack[place] = other;
+                        held += 1;
+                    }
+                    at = Child(nearest as u32);
+                    continue;
+                }
+            }
+            loop {
+                if held == 0 {
+                    return false;
+                }
+                held -= 1;
+                let next = stack[held];
+                if f32::from_bits((next >> 32) as u32) <= *t_max * SLACK {
+                    at = Child(next as u32);
+                    break;
+                }
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Simd, Work};
     use super::*;
     use crate::math::{Bounds, warp};
     use crate::sampling::{Key, Sampler, Sequence, Stream};
@@ -67,9 +154,57 @@ mod tests {
         Sampler::new(Sequence::Independent, Key::new(4, 0, Stream::Camera), i)
     }
 
-    fn check(boxes: &[Bounds]) {
-        let (bvh, order) = Bvh::build(boxes);
-        let mut seen = order.clone();
+    /// The items of all leaves that a ray comes to.
+    struct Visited<'a>(&'a Tree, &'a [Vec<u32>], Ray);
+
+    struct Found<'a>(&'a [Vec<u32>], Vec<u32>);
+
+    impl Visitor for Found<'_> {
+        fn visit(&mut self, _: Kind, leaf: usize, _: &mut f32) -> bool {
+            self.1.extend(&self.0[leaf]);
+            false
+        }
+    }
+
+    impl Work for Visited<'_> {
+        type Output = Vec<u32>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Vec<u32> {
+            let mut found = Found(self.1, Vec::new());
+            self.0.traverse::<L, false>(&self.2, &mut self.2.t_max.clone(), &mut found);
+            found.1
+        }
+    }
+
+    /// Whether the ray meets a box, in double precision; `None` where that is too close to call.
+    fn meets(b: &Bounds, ray: &Ray) -> bool {
+        let (mut near, mut far) = (0.0f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+            let (min, max) = (f64::from(b.min[axis]), f64::from(b.max[axis]));
+            if d == 0.0 {
+                if o < min || o > max {
+                    return false;
+                }
+                continue;
+            }
+            let (x, y) = ((min - o) / d, (max - o) / d);
+            (near, far) = (near.max(x.min(y)), far.min(x.max(y)));
+        }
+        near <= far
+    }
+
+    fn check(boxes: &[Bounds], kind: Kind) {
+        let mut leaves: Vec<Vec<u32>> = Vec::new();
+        let tree = Tree::build(
+            boxes,
+            |_| kind,
+            |_, items| {
+                leaves.push(items.to_vec());
+                leaves.len() as u32 - 1
+            },
+        );
+        let mut seen: Vec<u32> = leaves.concat();
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..boxes.len() as u32), "every item once");
         for i in 0..300 {
@@ -80,16 +215,13 @@ mod tests {
                 direction = Vec3::X;
             }
             let ray = Ray::new(origin, direction);
-            let mut found = Vec::new();
-            bvh.traverse(&mut { ray }, |range, _| {
-                found.extend(range.map(|k| order[k]));
-                false
-            });
-            found.sort_unstable();
-            for (k, b) in boxes.iter().enumerate() {
-                let node = Node { min: b.min, max: b.max, first: 0, count: 1, axis: 0 };
-                if node.meets(&ray, Vec3::ONE / direction) {
-                    assert!(found.binary_search(&(k as u32)).is_ok(), "box {k} was missed");
+            for simd in [Simd::Portable, Simd::detect()] {
+                let mut found = simd.run(Visited(&tree, &leaves, ray));
+                found.sort_unstable();
+                for (k, b) in boxes.iter().enumerate() {
+                    if meets(b, &ray) {
+                        assert!(found.binary_search(&(k as u32)).is_ok(), "{simd:?} missed box {k}");
+                    }
                 }
             }
         }
@@ -106,19 +238,25 @@ mod tests {
                 })
                 .collect()
         };
-        check(&[]);
-        check(&random(1, 0.1));
-        check(&random(300, 0.2));
-        check(&random(300, 0.0));
         let flat = Bounds { min: Vec3::new(-1.0, 0.0, -1.0), max: Vec3::new(1.0, 0.0, 1.0) };
-        check(&vec![flat; 100]);
         // Sizes that halve: the deepest tree that a heuristic can be led to.
-        let nested: Vec<_> = (0..120)
-            .map(|i| {
-                let x = 0.5f32.powi(i);
-                Bounds { min: Vec3::splat(x * 0.5), max: Vec3::splat(x) }
-            })
-            .collect();
-        check(&nested);
+        let nested = |n: i32| -> Vec<Bounds> {
+            (0..n)
+                .map(|i| {
+                    let x = 0.5f32.powi(i);
+                    Bounds { min: Vec3::splat(x * 0.5), max: Vec3::splat(x) }
+                })
+                .collect()
+        };
+        for kind in [Kind::Triangles, Kind::Other] {
+            check(&[], kind);
+            check(&random(1, 0.1), kind);
+            check(&random(9, 0.1), kind);
+            check(&random(300, 0.2), kind);
+            check(&random(300, 0.0), kind);
+            check(&vec![flat; 100], kind);
+            check(&nested(120), kind);
+            check(&nested(120).repeat(4), kind);
+        }
     }
 }

@@ -33,6 +33,8 @@ fn empty() -> Scene {
         materials: Arena::default(),
         meshes: Arena::default(),
         shapes: Vec::new(),
+        groups: Arena::default(),
+        instances: Vec::new(),
         lights: Vec::new(),
     }
 }

@@ -24,6 +24,7 @@ pub(crate) fn check(scene: &Scene) -> Vec<SceneError> {
         check_mesh(mesh, |message| problems.add(Subject::Mesh(i), message));
     }
     check_shapes(scene, &mut problems);
+    check_groups(scene, &mut problems);
     check_lights(scene, &mut problems);
     problems.0
 }
@@ -152,7 +153,8 @@ fn check_mesh(mesh: &Mesh, mut problem: impl FnMut(&'static str)) {
 }
 
 fn check_shapes(scene: &Scene, problems: &mut Problems) {
-    for (i, shape) in scene.shapes.iter().enumerate() {
+    let grouped = scene.groups.iter().flat_map(|group| &group.shapes);
+    for (i, shape) in scene.shapes.iter().chain(grouped).enumerate() {
         let subject = Subject::Shape(i);
         check_transform(&shape.to_world, subject, problems);
         if !scene.materials.contains(shape.material) {
@@ -199,6 +201,32 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
                 );
             }
             check_emission(scene, emission, subject, problems);
+        }
+    }
+}
+
+fn check_groups(scene: &Scene, problems: &mut Problems) {
+    let mut first = scene.shapes.len();
+    for (i, group) in scene.groups.iter().enumerate() {
+        if group.shapes.is_empty() {
+            problems.add(Subject::Group(i), "the group has no shape: instances of it would show nothing");
+        }
+        for (j, shape) in (first..).zip(&group.shapes) {
+            if shape.emission.is_some() {
+                let message = "a shape of a group cannot emit light: put the lamp beside the instances";
+                problems.add(Subject::Shape(j), message);
+            }
+            if shape.geometry == Geometry::Plane {
+                let message = "an infinite plane cannot be part of a group: use a rectangle";
+                problems.add(Subject::Shape(j), message);
+            }
+        }
+        first += group.shapes.len();
+    }
+    for (i, instance) in scene.instances.iter().enumerate() {
+        check_transform(&instance.to_world, Subject::Instance(i), problems);
+        if !scene.groups.contains(instance.group) {
+            problems.add(Subject::Instance(i), "its group does not exist");
         }
     }
 }
@@ -346,6 +374,8 @@ mod tests {
             materials: Arena::default(),
             meshes: Arena::default(),
             shapes: Vec::new(),
+            groups: Arena::default(),
+            instances: Vec::new(),
             lights: Vec::new(),
         }
     }

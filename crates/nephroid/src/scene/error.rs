@@ -15,8 +15,12 @@ pub enum Subject {
     Material(usize),
     /// A mesh.
     Mesh(usize),
-    /// A shape.
+    /// A shape: first come those of the scene, then those of its groups.
     Shape(usize),
+    /// A group of shapes.
+    Group(usize),
+    /// An instance of a group.
+    Instance(usize),
     /// A light without a surface.
     Light(usize),
 }
@@ -56,6 +60,8 @@ impl fmt::Display for SceneError {
             Subject::Material(i) => write!(f, "material {i}: "),
             Subject::Mesh(i) => write!(f, "mesh {i}: "),
             Subject::Shape(i) => write!(f, "shape {i}: "),
+            Subject::Group(i) => write!(f, "group {i}: "),
+            Subject::Instance(i) => write!(f, "instance {i}: "),
             Subject::Light(i) => write!(f, "light {i}: "),
         }?;
         f.write_str(&self.message)

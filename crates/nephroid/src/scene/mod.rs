@@ -11,7 +11,7 @@ use crate::film::FilmSettings;
 use crate::handle::Arena;
 use crate::light::Light;
 use crate::material::Material;
-use crate::shape::{Mesh, Shape};
+use crate::shape::{Group, Instance, Mesh, Shape};
 use crate::texture::Textures;
 
 /// Everything a picture is made of. Build it by hand or read it from a file, then give it to
@@ -30,6 +30,10 @@ pub struct Scene {
     pub meshes: Arena<Mesh>,
     /// Surfaces.
     pub shapes: Vec<Shape>,
+    /// Groups of surfaces, seen by their instances only.
+    pub groups: Arena<Group>,
+    /// Groups at places.
+    pub instances: Vec<Instance>,
     /// Lights without a surface.
     pub lights: Vec<Light>,
 }

@@ -4,16 +4,16 @@ use crate::math::{Bounds, Ray, Transform, Vec2, Vec3, gamma};
 /// A parallelogram or ellipse: the points `center + x·edge_x + y·edge_y` of a flat region.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
-    center: Vec3,
+    pub(super) center: Vec3,
     edge_x: Vec3,
     edge_y: Vec3,
     /// Dual basis: `x = dual_x · (p − center)`.
-    dual_x: Vec3,
-    dual_y: Vec3,
-    normal: Vec3,
-    region: Region,
+    pub(super) dual_x: Vec3,
+    pub(super) dual_y: Vec3,
+    pub(super) normal: Vec3,
+    pub(super) region: Region,
     /// The edge in `x` and `y`, 1 and a few roundings, so that abutting walls leave no gap.
-    limit: f32,
+    pub(super) limit: f32,
 }
 
 /// What part of the plane.

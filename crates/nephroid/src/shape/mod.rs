@@ -2,15 +2,19 @@
 
 mod cylinder;
 mod flat;
+mod flats;
 mod mesh;
 mod primitive;
 mod sphere;
 mod triangle;
+mod triangles;
 
+pub(crate) use flats::FlatBlock;
 pub use mesh::Mesh;
 pub(crate) use primitive::Primitive;
 pub(crate) use sphere::Sphere;
-pub(crate) use triangle::ShearedRay;
+pub(crate) use triangle::{ShearedRay, Triangle};
+pub(crate) use triangles::{Hits, ShearedLanes, TriangleBlock};
 
 use crate::handle::Handle;
 use crate::material::Material;
@@ -32,6 +36,26 @@ pub struct Shape {
     pub emission: Option<Handle<Texture>>,
     /// Turns the normal around.
     pub flip_normals: bool,
+}
+
+/// Shapes that are stored once and shown by any number of [`Instance`]s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// What messages call it.
+    pub name: String,
+    /// What it consists of, in the group's own space. None may emit or be infinite.
+    pub shapes: Vec<Shape>,
+}
+
+/// A group of shapes at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// What messages call it.
+    pub name: String,
+    /// What is shown.
+    pub group: Handle<Group>,
+    /// Where, from the group's space. Any map that can be undone; it may stretch spheres.
+    pub to_world: Transform,
 }
 
 /// The form of a shape in its own space.

@@ -2,7 +2,7 @@ use super::cylinder::Cylinder;
 use super::flat::{Flat, Region};
 use super::triangle::Triangle;
 use super::{Geometry, Intersection, Mesh, Shape, ShearedRay, Sphere, SurfacePoint};
-use crate::math::{Bounds, Ray, Vec2};
+use crate::math::{Bounds, Ray, Vec2, offset_origin};
 
 /// A piece of a shape in world space: what rays are tested against.
 #[derive(Clone, Copy, Debug)]
@@ -14,9 +14,8 @@ pub(crate) enum Primitive {
 }
 
 impl Primitive {
-    /// The pieces of a shape. Meshes are in `meshes` already in world space, this shape's at index
-    /// `mesh`. `None` if the shape has no proper size; single degenerate triangles are left out.
-    pub fn of_shape(shape: &Shape, meshes: &[Mesh], mesh: usize) -> Option<Vec<Self>> {
+    /// The pieces of a shape that is no mesh. `None` if it has no proper size.
+    pub fn of_shape(shape: &Shape) -> Option<Vec<Self>> {
         let to_world = &shape.to_world;
         let pieces = match shape.geometry {
             Geometry::Sphere { center, radius } => vec![Self::Sphere(Sphere::new(to_world, center, radius)?)],
@@ -29,13 +28,9 @@ impl Primitive {
             Geometry::Cube => (0..6)
                 .map(|face| Flat::cube_face(to_world, face / 2, face % 2 == 1).map(Self::Flat))
                 .collect::<Option<_>>()?,
-            Geometry::Mesh(_) => (0..meshes[mesh].triangles.len() as u32)
-                .map(|i| Triangle::new(&meshes[mesh], mesh as u32, i))
-                .filter(Triangle::is_proper)
-                .map(Self::Triangle)
-                .collect(),
+            Geometry::Mesh(_) => return None,
         };
-        (!pieces.is_empty()).then_some(pieces)
+        Some(pieces)
     }
 
     #[inline]
@@ -46,6 +41,21 @@ impl Primitive {
             Self::Cylinder(c) => c.intersect(ray),
             Self::Triangle(t) => t.intersect(ray, sheared),
         }
+    }
+
+    /// Where a ray meets a curved primitive again, beyond a hit.
+    #[cold]
+    pub fn beyond(&self, ray: &Ray, hit: &Intersection, sheared: &ShearedRay) -> Option<Intersection> {
+        let point = match self {
+            Self::Sphere(s) => s.surface(ray, hit),
+            Self::Cylinder(c) => c.surface(ray, hit),
+            Self::Flat(_) | Self::Triangle(_) => return None,
+        };
+        let origin = offset_origin(point.position, point.error, point.ng, ray.direction);
+        let onward = Ray { origin, t_max: ray.t_max - hit.t, ..*ray };
+        let far = self.intersect(&onward, sheared)?;
+        let t = hit.t + far.t;
+        (t < ray.t_max).then_some(Intersection { t, ..far })
     }
 
     /// The surface at a hit.
@@ -106,6 +116,13 @@ mod tests {
         Shape { name: String::new(), geometry, to_world, material, emission: None, flip_normals: false }
     }
 
+    fn pieces(shape: &Shape, meshes: &[Mesh]) -> Vec<Primitive> {
+        Primitive::of_shape(shape).unwrap_or_else(|| {
+            let n = meshes[0].triangles.len() as u32;
+            (0..n).map(|i| Primitive::Triangle(Triangle::new(&meshes[0], 0, i))).collect()
+        })
+    }
+
     fn octahedron() -> Mesh {
         let positions = vec![Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
         let triangles =
@@ -138,10 +155,7 @@ mod tests {
                     *p = place.point(*p);
                 }
                 let meshes = vec![mesh];
-                list.push((
-                    Primitive::of_shape(&shape(geometry.clone(), place), &meshes, 0).unwrap(),
-                    meshes,
-                ));
+                list.push((pieces(&shape(geometry.clone(), place), &meshes), meshes));
             }
         }
         list
@@ -221,7 +235,7 @@ mod tests {
     fn rays_at_edges_and_vertices_of_a_closed_mesh_all_hit() {
         let meshes = [octahedron()];
         let geometry = Geometry::Mesh(Arena::default().push(octahedron()));
-        let pieces = Primitive::of_shape(&shape(geometry, Transform::IDENTITY), &meshes, 0).unwrap();
+        let pieces = pieces(&shape(geometry, Transform::IDENTITY), &meshes);
         for i in 0..100_000u64 {
             let mut s = sampler(i);
             let origin = warp::square_to_sphere(s.next_2d()) * 0.3;

@@ -15,8 +15,8 @@ pub(crate) struct Triangle {
 /// needs of it (Woop, Benthin and Wald 2013, *Watertight Ray/Triangle Intersection*, JCGT 2(1)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShearedRay {
-    axes: [usize; 3],
-    shear: Vec3,
+    pub(super) axes: [usize; 3],
+    pub(super) shear: Vec3,
 }
 
 impl ShearedRay {
@@ -59,9 +59,15 @@ impl Triangle {
     /// triangles let nothing through.
     #[inline]
     pub fn intersect(&self, ray: &Ray, sheared: &ShearedRay) -> Option<Intersection> {
+        Self::meet(&self.p, ray, sheared)
+    }
+
+    /// The same for three corners.
+    #[inline]
+    pub fn meet(p: &[Vec3; 3], ray: &Ray, sheared: &ShearedRay) -> Option<Intersection> {
         let [kx, ky, kz] = sheared.axes;
         let s = sheared.shear;
-        let q = self.p.map(|p| {
+        let q = p.map(|p| {
             let p = p - ray.origin;
             Vec3::new(p[kx] - s.x * p[kz], p[ky] - s.y * p[kz], p[kz])
         });

@@ -1,5 +1,8 @@
-use super::World;
-use crate::bvh::Bvh;
+use super::level::{Item, Level, Other};
+use super::placed::Placed;
+use super::scenery::Scenery;
+use super::{Surfaced, World};
+use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::light::{
@@ -9,7 +12,7 @@ use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
-use crate::shape::{Geometry, Mesh, Primitive, Shape};
+use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -21,91 +24,186 @@ impl World {
         if !problems.is_empty() {
             return Err(SceneErrors(problems));
         }
-        let (meshes, pieces) = pieces(&scene)?;
-        let mut bounds = Bounds::EMPTY;
-        let (mut finite, mut infinite) = (Vec::new(), Vec::new());
-        for (owner, pieces) in (0u32..).zip(&pieces) {
-            for &piece in pieces {
-                let b = piece.bounds();
-                bounds = bounds.union(b);
-                if b.is_empty() { infinite.push((piece, owner)) } else { finite.push((piece, owner)) }
-            }
-        }
-        let boxes: Vec<Bounds> = finite.iter().map(|(p, _)| p.bounds()).collect();
-        let (bvh, order) = Bvh::build(&boxes);
-        let in_tree = order.len();
-        let (primitives, owner) = order.iter().map(|&i| finite[i as usize]).chain(infinite).unzip();
+        let (scenery, pieces_of_lamps) = scenery(&scene)?;
+        let bounds = scenery.bounds();
 
         let camera = CameraRays::new(&scene.camera, &scene.film);
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let (emitters, emitter_of_shape) = emitters(&scene, &pieces, Target { center, radius });
+        let (emitters, emitter_of_shape) = emitters(&scene, pieces_of_lamps, Target { center, radius });
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
-        let (invisible, masked) = transparency(&scene);
+        let surfaces: Vec<Surfaced> = all_shapes(&scene)
+            .enumerate()
+            .map(|(i, s)| {
+                let inside = Material::unmasked(&scene.materials, s.material);
+                let invisible = scene.materials[inside] == Material::Null;
+                Surfaced {
+                    material: s.material,
+                    flipped: s.flip_normals,
+                    invisible,
+                    masked: inside != s.material && !invisible,
+                    light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
+                }
+            })
+            .collect();
+        let transparent = surfaces.iter().any(|s| s.invisible);
+        let cutouts = surfaces.iter().any(|s| s.masked);
         Ok(Self {
             scene,
-            meshes,
-            primitives,
-            owner,
-            in_tree,
-            bvh,
-            invisible,
-            masked,
+            scenery,
+            surfaces,
+            cutouts,
+            transparent,
             emitters,
             by_power,
             for_direct,
-            emitter_of_shape,
             camera,
             bounds,
         })
     }
 }
 
-/// For each shape, whether light passes it anyway, and whether it passes by chance; the latter empty where
-/// no shape is masked.
-fn transparency(scene: &Scene) -> (Vec<bool>, Vec<bool>) {
-    let materials = &scene.materials;
-    let each = |shape: &Shape| {
-        let inside = Material::unmasked(materials, shape.material);
-        let invisible = materials[inside] == Material::Null;
-        (invisible, inside != shape.material && !invisible)
-    };
-    let (invisible, masked): (Vec<bool>, Vec<bool>) = scene.shapes.iter().map(each).unzip();
-    (invisible, if masked.contains(&true) { masked } else { Vec::new() })
+/// The shapes of the scene, then those of its groups: the order in which hits count them.
+fn all_shapes(scene: &Scene) -> impl Iterator<Item = &Shape> {
+    scene.shapes.iter().chain(scene.groups.iter().flat_map(|group| &group.shapes))
 }
 
-/// World-space meshes, and the primitives of each shape.
-fn pieces(scene: &Scene) -> Result<(Vec<Mesh>, Vec<Vec<Primitive>>), SceneErrors> {
-    let mut meshes = Vec::new();
-    let mut pieces = Vec::with_capacity(scene.shapes.len());
-    let mut problems = Vec::new();
-    for (i, shape) in scene.shapes.iter().enumerate() {
-        let index = meshes.len();
-        if let Geometry::Mesh(mesh) = shape.geometry {
-            meshes.push(placed(&scene.meshes[mesh], &shape.to_world));
-        }
-        let own = Primitive::of_shape(shape, &meshes, index).filter(|own| own.iter().all(is_finite));
-        pieces.push(own.unwrap_or_else(|| {
-            problems.push(SceneError {
-                subject: Subject::Shape(i),
-                message: "nothing of it is left in single precision: it is too small, too thin or too large"
-                    .into(),
-            });
-            Vec::new()
-        }));
+/// All surfaces, and the pieces of each shape that emits.
+fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors> {
+    let mut parts = Parts::default();
+    let top = parts.level(scene, &scene.shapes, 0);
+    let mut first = scene.shapes.len();
+    let mut groups = Vec::new();
+    for group in scene.groups.iter() {
+        groups.push(parts.level(scene, &group.shapes, first));
+        first += group.shapes.len();
     }
-    if problems.is_empty() { Ok((meshes, pieces)) } else { Err(SceneErrors(problems)) }
+    let levels: Vec<Level> = groups.into_iter().map(|pieces| parts.build(pieces)).collect();
+
+    let (mut top, mut instances) = (top, Vec::new());
+    for (number, instance) in scene.instances.iter().enumerate() {
+        let group = instance.group.index();
+        let placed = Placed::new(group as u32, &instance.to_world);
+        let bounds = placed.bounds(levels[group].bounds);
+        if is_sound(&bounds) {
+            top.finite.push((bounds, Item::Other(Other::Instance(number as u32))));
+        } else {
+            parts.problems.push(nothing_left(Subject::Instance(number)));
+        }
+        instances.push(placed);
+    }
+    if !parts.problems.is_empty() {
+        return Err(SceneErrors(parts.problems));
+    }
+    let top = parts.build(top);
+    let Parts { meshes, mesh_of, primitives, owner, lamps, count, .. } = parts;
+    let simd = Simd::detect();
+    let scenery = Scenery { meshes, mesh_of, primitives, owner, top, groups: levels, instances, count, simd };
+    Ok((scenery, lamps))
+}
+
+/// What a level will be built of.
+struct Pieces {
+    finite: Vec<(Bounds, Item)>,
+    infinite: Vec<u32>,
+}
+
+/// The parts of a [`Scenery`] while they come together.
+#[derive(Default)]
+struct Parts {
+    meshes: Vec<Mesh>,
+    mesh_of: Vec<Option<u32>>,
+    primitives: Vec<Primitive>,
+    owner: Vec<u32>,
+    lamps: Vec<Vec<Primitive>>,
+    count: usize,
+    problems: Vec<SceneError>,
+}
+
+impl Parts {
+    /// Takes shapes apart, the first of which is number `first` of all.
+    fn level(&mut self, scene: &Scene, shapes: &[Shape], first: usize) -> Pieces {
+        let mut pieces = Pieces { finite: Vec::new(), infinite: Vec::new() };
+        for (number, shape) in (first..).zip(shapes) {
+            let before = pieces.finite.len() + pieces.infinite.len();
+            let sound = match shape.geometry {
+                Geometry::Mesh(mesh) => self.mesh(&scene.meshes[mesh], shape, number, &mut pieces),
+                _ => self.primitives(shape, number, &mut pieces),
+            };
+            let added = pieces.finite.len() + pieces.infinite.len() - before;
+            self.count += added;
+            if !sound || added == 0 {
+                self.problems.push(nothing_left(Subject::Shape(number)));
+            }
+        }
+        pieces
+    }
+
+    /// Adds the triangles of a mesh that have an area; false if one is not sound.
+    fn mesh(&mut self, mesh: &Mesh, shape: &Shape, number: usize, pieces: &mut Pieces) -> bool {
+        let at = self.meshes.len() as u32;
+        self.mesh_of.push(Some(at));
+        self.meshes.push(placed(mesh, &shape.to_world));
+        let mesh = &self.meshes[at as usize];
+        let mut lamp = Vec::new();
+        let mut sound = true;
+        for index in 0..mesh.triangles.len() as u32 {
+            let triangle = Triangle::new(mesh, at, index);
+            if !triangle.is_proper() {
+                continue;
+            }
+            let bounds = triangle.bounds();
+            sound &= is_sound(&bounds);
+            pieces.finite.push((bounds, Item::Triangle { shape: number as u32, index }));
+            if shape.emission.is_some() {
+                lamp.push(Primitive::Triangle(triangle));
+            }
+        }
+        self.lamps.push(lamp);
+        sound
+    }
+
+    /// Adds the pieces of a shape that is no mesh; false if one is not sound.
+    fn primitives(&mut self, shape: &Shape, number: usize, pieces: &mut Pieces) -> bool {
+        self.mesh_of.push(None);
+        let own = Primitive::of_shape(shape).unwrap_or_default();
+        for &piece in &own {
+            let at = self.primitives.len() as u32;
+            self.primitives.push(piece);
+            self.owner.push(number as u32);
+            let bounds = piece.bounds();
+            if bounds.is_empty() {
+                pieces.infinite.push(at);
+            } else if is_sound(&bounds) {
+                pieces.finite.push((bounds, Item::Other(Other::Primitive(at))));
+            } else {
+                return false;
+            }
+        }
+        self.lamps.push(if shape.emission.is_some() { own } else { Vec::new() });
+        true
+    }
+
+    fn build(&self, pieces: Pieces) -> Level {
+        // Only shapes that are meshes have triangles.
+        let mesh = |shape: u32| &self.meshes[self.mesh_of[shape as usize].unwrap_or(0) as usize];
+        Level::new(&pieces.finite, pieces.infinite, &self.primitives, mesh)
+    }
+}
+
+fn nothing_left(subject: Subject) -> SceneError {
+    let message = "nothing of it is left in single precision: it is too small, too thin or too large";
+    SceneError { subject, message: message.into() }
 }
 
 /// Whether single precision holds where it lies.
-fn is_finite(piece: &Primitive) -> bool {
-    let bounds = piece.bounds();
-    bounds.is_empty() || (bounds.extent().is_finite() && bounds.area().is_finite())
+fn is_sound(bounds: &Bounds) -> bool {
+    bounds.extent().is_finite() && bounds.area().is_finite()
 }
 
-/// A mesh in world space, still counter-clockwise where the transform mirrors.
+/// A mesh under a transform, still counter-clockwise where the transform mirrors.
 fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
     let mirrored = to_world.is_mirrored();
     Mesh {
@@ -120,12 +218,12 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
     }
 }
 
-fn emitters(scene: &Scene, pieces: &[Vec<Primitive>], target: Target) -> (Vec<Emitter>, Vec<Option<u32>>) {
+fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> (Vec<Emitter>, Vec<Option<u32>>) {
     let mut emitters = Vec::new();
     let mut of_shape = vec![None; scene.shapes.len()];
-    for (i, shape) in scene.shapes.iter().enumerate() {
+    for (i, (shape, pieces)) in scene.shapes.iter().zip(pieces).enumerate() {
         let Some(radiance) = shape.emission else { continue };
-        if let Some(area) = AreaEmitter::new(pieces[i].clone(), radiance, shape.flip_normals) {
+        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals) {
             of_shape[i] = Some(emitters.len() as u32);
             let power = area.power(&scene.textures);
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });

@@ -6,72 +6,37 @@
 //! ray and the candidate, not a sampler: closest hits, shadow rays and photons need no other code and no
 //! random numbers, and a ray traced twice finds the same.
 
-use super::{Hit, World, leave};
+use super::{Hit, RayHit, Surfaced, World};
 use crate::material::Material;
 use crate::math::Ray;
 use crate::sampling::{Key, Stream};
-use crate::shape::{Intersection, Primitive, ShearedRay};
-
-/// Which of the places where a ray meets one primitive is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
-    /// The nearest.
-    Near = 0,
-    /// The other side of a sphere or cylinder.
-    Far = 1,
-}
 
 impl World {
-    /// The nearest place where a ray meets a primitive that is there.
-    #[inline]
-    pub(super) fn meet(&self, primitive: usize, ray: &Ray, sheared: &ShearedRay) -> Option<Intersection> {
-        let hit = self.primitives[primitive].intersect(ray, sheared)?;
-        if self.masked.is_empty() || !self.masked[self.owner[primitive] as usize] {
-            return Some(hit);
+    /// Whether the shape is there at a hit; asked during the search, in worlds with `cutouts` only. The mean
+    /// over rays is the opacity; 0 and 1 are certain.
+    pub(super) fn is_there(&self, ray: &Ray, hit: &RayHit) -> bool {
+        let surface = &self.surfaces[hit.shape as usize];
+        if !surface.masked {
+            return true;
         }
-        if self.is_there(ray, primitive, &hit, Side::Near) {
-            return Some(hit);
-        }
-        let far = self.far_side(primitive, ray, &hit, sheared)?;
-        self.is_there(ray, primitive, &far, Side::Far).then_some(far)
-    }
-
-    /// Whether the surface of a masked shape is there for a ray that meets it. The mean over rays is the
-    /// opacity; 0 and 1 are certain.
-    pub(super) fn is_there(&self, ray: &Ray, primitive: usize, hit: &Intersection, side: Side) -> bool {
-        let uv = self.primitives[primitive].surface(ray, hit, &self.meshes).uv;
-        let material = self.scene.shapes[self.owner[primitive] as usize].material;
-        let opacity = Material::opacity(&self.scene.materials, material, &self.scene.textures, uv);
-        chance(ray, primitive as u64 * 2 + side as u64) < f64::from(opacity)
+        let point = self.surface(ray, hit);
+        let material = surface.material;
+        let opacity = Material::opacity(&self.scene.materials, material, &self.scene.textures, point.uv);
+        // A sphere or a cylinder is met from either side.
+        let side = u64::from(point.ng.dot(ray.direction) > 0.0);
+        let instance = hit.instance.map_or(0, |i| u64::from(i) + 1);
+        let candidate = [u64::from(hit.shape) << 32 | u64::from(hit.primitive), instance << 1 | side];
+        chance(ray, candidate) < f64::from(opacity)
     }
 
     /// The opacity of the surface that a ray has met: 1 without a mask. Fewer photons land on a masked
     /// surface by as much, and each stands for as many more.
     pub(crate) fn opacity(&self, hit: &Hit) -> f32 {
-        if self.masked.is_empty() || !self.masked[hit.shape as usize] {
+        let Surfaced { material, masked, .. } = self.surfaces[hit.shape as usize];
+        if !masked {
             return 1.0;
         }
-        let material = self.scene.shapes[hit.shape as usize].material;
         Material::opacity(&self.scene.materials, material, &self.scene.textures, hit.point.uv)
-    }
-
-    /// Where a ray that was let through one side of a curved primitive meets the other.
-    #[cold]
-    fn far_side(
-        &self,
-        primitive: usize,
-        ray: &Ray,
-        near: &Intersection,
-        sheared: &ShearedRay,
-    ) -> Option<Intersection> {
-        let piece = &self.primitives[primitive];
-        if !matches!(piece, Primitive::Sphere(_) | Primitive::Cylinder(_)) {
-            return None;
-        }
-        let onward = leave(&piece.surface(ray, near, &self.meshes), ray.direction);
-        let far = piece.intersect(&onward, sheared)?;
-        let t = near.t + far.t;
-        (t < ray.t_max).then_some(Intersection { t, ..far })
     }
 }
 
@@ -79,7 +44,7 @@ impl World {
 /// the next, and from one ray to the next.
 ///
 /// Exponents are left out, so that a scene scaled by a power of two keeps its picture.
-pub(super) fn chance(ray: &Ray, candidate: u64) -> f64 {
+pub(super) fn chance(ray: &Ray, candidate: [u64; 2]) -> f64 {
     const KEY: Key = Key::new(0, 0, Stream::Masks);
     let bits = |v: f32| u64::from(v.to_bits() & 0x807f_ffff);
     let (o, d) = (ray.origin, ray.direction);
@@ -87,6 +52,7 @@ pub(super) fn chance(ray: &Ray, candidate: u64) -> f64 {
         .with(bits(o.x) << 32 | bits(o.y))
         .with(bits(o.z) << 32 | bits(d.x))
         .with(bits(d.y) << 32 | bits(d.z))
-        .with(candidate);
+        .with(candidate[0])
+        .with(candidate[1]);
     (key.hash() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }

@@ -40,6 +40,8 @@ fn world(
         meshes: Arena::default(),
         shapes: Vec::new(),
         lights: Vec::new(),
+        groups: Arena::default(),
+        instances: Vec::new(),
     };
     let opacity = opacity(&mut scene.textures);
     let reflectance = scene.textures.constant(Rgb::splat(0.5));
@@ -201,10 +203,10 @@ fn opacity_of(world: &World) -> Handle<Texture> {
 fn chances_do_not_know_the_unit_of_length() {
     for i in 0..1000 {
         let Ray { origin, direction, .. } = ray(i);
-        let value = chance(&Ray::new(origin, direction), i);
-        assert_eq!(value, chance(&Ray::new(origin * 1024.0, direction), i));
-        assert_eq!(value, chance(&Ray::new(origin / 64.0, direction / 64.0), i));
-        assert_ne!(value, chance(&Ray::new(origin, direction), i + 1));
+        let value = chance(&Ray::new(origin, direction), [i, 0]);
+        assert_eq!(value, chance(&Ray::new(origin * 1024.0, direction), [i, 0]));
+        assert_eq!(value, chance(&Ray::new(origin / 64.0, direction / 64.0), [i, 0]));
+        assert_ne!(value, chance(&Ray::new(origin, direction), [i, 1]));
         assert!((0.0..1.0).contains(&value));
     }
 }

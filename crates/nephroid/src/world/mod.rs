@@ -5,8 +5,13 @@ mod build;
 mod cutout;
 #[cfg(test)]
 mod cutout_tests;
+mod level;
+mod placed;
+mod scenery;
+#[cfg(test)]
+mod tests;
 
-use crate::bvh::Bvh;
+use self::scenery::Scenery;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
@@ -15,43 +20,67 @@ use crate::material::{Bsdf, Material, Surface};
 use crate::math::{Bounds, Frame, Ray, Vec3, offset_origin};
 use crate::sampling::Discrete;
 use crate::scene::Scene;
-use crate::shape::{Intersection, Mesh, Primitive, ShearedRay, SurfacePoint};
+use crate::shape::SurfacePoint;
+use crate::texture::Texture;
 
 /// A scene made ready to be rendered. See [`World::new`].
 #[derive(Clone, Debug)]
 pub struct World {
     scene: Scene,
-    /// Meshes in world space, one for each shape that has one.
-    meshes: Vec<Mesh>,
-    primitives: Vec<Primitive>,
-    /// The shape each primitive is a piece of.
-    owner: Vec<u32>,
-    /// How many of the primitives, from the first, are in the tree; the rest are infinite.
-    in_tree: usize,
-    bvh: Bvh,
-    /// Whether light passes a shape as if it were not there.
-    invisible: Vec<bool>,
-    /// Whether each shape has a mask; empty if none has.
-    masked: Vec<bool>,
+    scenery: Scenery,
+    /// What is known of each shape of the scene, then of each shape of its groups.
+    surfaces: Vec<Surfaced>,
+    /// Whether any shape is masked: see [`World::is_there`].
+    cutouts: bool,
+    /// Whether light passes some shape as if it were not there.
+    transparent: bool,
     emitters: Vec<Emitter>,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
     /// Emitters as next event estimation asks them.
     for_direct: Option<Discrete>,
-    /// The emitter each shape is, if it is one.
-    emitter_of_shape: Vec<Option<u32>>,
     camera: CameraRays,
     bounds: Bounds,
 }
 
-/// Where a ray meets a surface.
+/// What rays ask of a shape.
+#[derive(Clone, Copy, Debug)]
+struct Surfaced {
+    material: Handle<Material>,
+    flipped: bool,
+    /// Whether light passes it as if it were not there.
+    invisible: bool,
+    /// Whether light passes it by chance.
+    masked: bool,
+    /// The radiance and number of the light that it is.
+    light: Option<(Handle<Texture>, u32)>,
+}
+
+/// Where a ray meets a surface, as the search finds it: see [`World::nearest`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// Distance along the ray, in multiples of its direction.
+    pub t: f32,
+    /// Of a triangle the weight of the second vertex; of other primitives a coordinate of their own.
+    pub u: f32,
+    /// Of a triangle the weight of the third vertex; of other primitives a coordinate of their own.
+    pub v: f32,
+    /// Index of the shape: first come those of the scene, then those of its groups.
+    pub shape: u32,
+    /// Of a mesh which triangle; else which of all primitives.
+    pub primitive: u32,
+    /// The instance by which the shape is seen, if it is one of a group.
+    pub instance: Option<u32>,
+}
+
+/// The surface where a ray meets it.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// Distance along the ray, in multiples of its direction.
     pub t: f32,
     /// The surface there.
     pub point: SurfacePoint,
-    /// Index of the shape.
+    /// Index of the shape: first come those of the scene, then those of its groups.
     pub shape: u32,
 }
 
@@ -65,7 +94,7 @@ impl World {
         &self.scene
     }
 
-    /// Bounds of the finite shapes; empty if there are none.
+    /// Bounds of the finite shapes and the instances; empty if there are none.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
@@ -80,9 +109,14 @@ impl World {
         self.emitters.iter().map(|e| (e.name.as_str(), e.power))
     }
 
-    /// How many primitives rays are tested against.
+    /// How many primitives rays are tested against; those of a group count once.
     pub fn primitive_count(&self) -> usize {
-        self.primitives.len()
+        self.scenery.count
+    }
+
+    /// Bytes of the trees that rays go through, with the primitives in their leaves.
+    pub fn tree_bytes(&self) -> usize {
+        self.scenery.bytes()
     }
 
     pub(crate) fn emitters(&self) -> &[Emitter] {
@@ -98,7 +132,7 @@ impl World {
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {
-        Lookup { meshes: &self.meshes, textures: &self.scene.textures }
+        Lookup { meshes: &self.scenery.meshes, textures: &self.scene.textures }
     }
 
     pub(crate) fn camera(&self) -> &CameraRays {
@@ -107,48 +141,40 @@ impl World {
 
     /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.
     pub(crate) fn has_dirac_surfaces(&self) -> bool {
-        self.scene.shapes.iter().any(|s| is_dirac(&self.scene.materials, s.material))
+        self.surfaces.iter().any(|s| is_dirac(&self.scene.materials, s.material))
     }
 
     /// The first surface a ray meets, null ones included.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let sheared = ShearedRay::new(ray.direction);
-        let mut shortened = *ray;
-        let mut nearest: Option<(usize, Intersection)> = None;
-        let mut test = |range: std::ops::Range<usize>, ray: &mut Ray| {
-            for i in range {
-                if let Some(hit) = self.meet(i, ray, &sheared) {
-                    ray.t_max = hit.t;
-                    nearest = Some((i, hit));
-                }
-            }
-            false
-        };
-        test(self.in_tree..self.primitives.len(), &mut shortened);
-        self.bvh.traverse(&mut shortened, &mut test);
-        let (i, hit) = nearest?;
-        let shape = self.owner[i];
-        let point = self.primitives[i].surface(ray, &hit, &self.meshes);
-        let flipped = self.scene.shapes[shape as usize].flip_normals;
-        Some(Hit { t: hit.t, point: if flipped { point.flipped() } else { point }, shape })
+        let hit = self.nearest(ray)?;
+        Some(Hit { t: hit.t, point: self.surface(ray, &hit), shape: hit.shape })
+    }
+
+    /// Where a ray first meets a surface, null ones included: the search alone. The surface there is for
+    /// [`Self::surface`] to tell.
+    pub fn nearest(&self, ray: &Ray) -> Option<RayHit> {
+        if self.cutouts {
+            self.scenery.nearest(ray, |hit| self.is_there(ray, hit))
+        } else {
+            self.scenery.nearest(ray, |_| true)
+        }
+    }
+
+    /// The surface at a hit of this ray.
+    pub fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
+        let point = self.scenery.surface(ray, hit);
+        if self.surfaces[hit.shape as usize].flipped { point.flipped() } else { point }
     }
 
     /// Whether anything but null surfaces lies on the ray before its end.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let sheared = ShearedRay::new(ray.direction);
-        let mut blocked = false;
-        let mut test = |range: std::ops::Range<usize>, ray: &mut Ray| {
-            blocked = blocked
-                || range.into_iter().any(|i| {
-                    !self.invisible[self.owner[i] as usize] && self.meet(i, ray, &sheared).is_some()
-                });
-            blocked
-        };
-        let mut ray = *ray;
-        if !test(self.in_tree..self.primitives.len(), &mut ray) {
-            self.bvh.traverse(&mut ray, &mut test);
+        if self.cutouts || self.transparent {
+            self.scenery.any(ray, |hit| {
+                !self.surfaces[hit.shape as usize].invisible && (!self.cutouts || self.is_there(ray, hit))
+            })
+        } else {
+            self.scenery.any(ray, |_| true)
         }
-        blocked
     }
 
     /// Whether light from `source` in direction `wi` reaches a point of a surface.
@@ -167,15 +193,14 @@ impl World {
 
     /// How the surface scatters, seen from the side of `wo`.
     pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
-        let material = self.scene.shapes[hit.shape as usize].material;
+        let material = self.surfaces[hit.shape as usize].material;
         let surface = Surface { ng: hit.point.ng, frame: Frame::from_normal(hit.point.ns), uv: hit.point.uv };
         Material::at(&self.scene.materials, material, &self.scene.textures, &surface, wo)
     }
 
     /// Radiance the surface itself emits towards `wo`, in W/(m²·sr), and the light it belongs to.
     pub fn emitted(&self, hit: &Hit, wo: Vec3) -> Option<(usize, Rgb)> {
-        let emitter = self.emitter_of_shape[hit.shape as usize]?;
-        let texture = self.scene.shapes[hit.shape as usize].emission?;
+        let (texture, emitter) = self.surfaces[hit.shape as usize].light?;
         (wo.dot(hit.point.ng) > 0.0)
             .then(|| (emitter as usize, self.scene.textures.eval(texture, hit.point.uv)))
     }

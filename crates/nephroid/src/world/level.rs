@@ -1,0 +1,220 @@
+use crate::bvh::{Kind, Lanes, Tree, Visitor};
+use crate::math::{Bounds, Ray};
+use crate::shape::{FlatBlock, Hits, Intersection, Mesh, Primitive, ShearedLanes, ShearedRay, TriangleBlock};
+
+/// A tree and what is in its leaves: the scene without its groups, or a group.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    tree: Tree,
+    triangles: Vec<TriangleBlock>,
+    flats: Vec<FlatBlock>,
+    others: Vec<Other>,
+    /// Primitives without bounds, beside the tree.
+    infinite: Vec<u32>,
+    pub bounds: Bounds,
+}
+
+/// What a leaf of one item holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Other {
+    /// A primitive, by its number.
+    Primitive(u32),
+    /// An instance, by its number.
+    Instance(u32),
+}
+
+/// What a tree is built over.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Item {
+    /// A triangle of the mesh of a shape.
+    Triangle { shape: u32, index: u32 },
+    /// Any other.
+    Other(Other),
+}
+
+/// The candidate for a hit that a level offers: of which shape or primitive, and where.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub t: f32,
+    pub u: f32,
+    pub v: f32,
+    pub piece: Item,
+}
+
+impl Level {
+    /// Over items with bounds, and primitives without any.
+    pub fn new<'a>(
+        items: &[(Bounds, Item)],
+        infinite: Vec<u32>,
+        primitives: &'a [Primitive],
+        mesh: impl Fn(u32) -> &'a Mesh,
+    ) -> Self {
+        let boxes: Vec<Bounds> = items.iter().map(|(bounds, _)| *bounds).collect();
+        let (mut triangles, mut flats, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        let kind = |i: u32| match items[i as usize].1 {
+            Item::Triangle { .. } => Kind::Triangles,
+            Item::Other(Other::Primitive(p)) if matches!(primitives[p as usize], Primitive::Flat(_)) => {
+                Kind::Flats
+            }
+            Item::Other(_) => Kind::Other,
+        };
+        let tree = Tree::build(&boxes, kind, |kind, list| {
+            let members = list.iter().map(|&i| items[i as usize].1);
+            let number = match kind {
+                Kind::Triangles => {
+                    triangles.push(TriangleBlock::new(members.filter_map(|item| match item {
+                        Item::Triangle { shape, index } => Some((shape, mesh(shape), index)),
+                        Item::Other(_) => None,
+                    })));
+                    triangles.len()
+                }
+                Kind::Flats => {
+                    flats.push(FlatBlock::new(members.filter_map(|item| match item {
+                        Item::Other(Other::Primitive(p)) => match &primitives[p as usize] {
+                            Primitive::Flat(flat) => Some((p, flat)),
+                            _ => None,
+                        },
+                        _ => None,
+                    })));
+                    flats.len()
+                }
+                Kind::Other => {
+                    others.extend(members.filter_map(|item| match item {
+                        Item::Other(other) => Some(other),
+                        Item::Triangle { .. } => None,
+                    }));
+                    others.len()
+                }
+            };
+            number as u32 - 1
+        });
+        triangles.shrink_to_fit();
+        let bounds = boxes.iter().fold(Bounds::EMPTY, |all, &b| all.union(b));
+        Self { tree, triangles, flats, others, infinite, bounds }
+    }
+
+    /// Bytes of the tree and its leaves.
+    pub fn bytes(&self) -> usize {
+        self.tree.bytes()
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.flats[..])
+            + size_of_val(&self.others[..])
+    }
+
+    /// Offers the hits of a ray before `t_max`, near ones about first. What is taken shortens the ray,
+    /// and ends the search where `ANY` hit will do; whether it did is returned.
+    #[inline(always)]
+    pub fn search<L: Lanes, const ANY: bool>(
+        &self,
+        primitives: &[Primitive],
+        ray: &Ray,
+        t_max: &mut f32,
+        searcher: &mut impl Searcher,
+    ) -> bool {
+        let sheared = ShearedRay::new(ray.direction);
+        let lanes = ShearedLanes::<L>::new(ray, &sheared);
+        for &p in &self.infinite {
+            if single::<ANY>(primitives, p, ray, &sheared, t_max, searcher) {
+                return true;
+            }
+        }
+        let mut leaves = Leaves::<L, _, ANY> { level: self, primitives, ray, sheared, lanes, searcher };
+        self.tree.traverse::<L, ANY>(ray, t_max, &mut leaves)
+    }
+}
+
+/// The leaves of a level, as a ray comes to them.
+struct Leaves<'a, L, S, const ANY: bool> {
+    level: &'a Level,
+    primitives: &'a [Primitive],
+    ray: &'a Ray,
+    sheared: ShearedRay,
+    lanes: ShearedLanes<L>,
+    searcher: &'a mut S,
+}
+
+impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
+    #[inline(always)]
+    fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool {
+        match kind {
+            Kind::Triangles => {
+                let block = &self.level.triangles[number];
+                let hits = block.intersect::<L>(self.ray, &self.sheared, &self.lanes, *t_max);
+                take::<ANY>(hits, t_max, self.searcher, |i| Item::Triangle {
+                    shape: block.shape[i],
+                    index: block.index[i],
+                })
+            }
+            Kind::Flats => {
+                let block = &self.level.flats[number];
+                let hits = block.intersect::<L>(self.ray, *t_max);
+                take::<ANY>(hits, t_max, self.searcher, |i| Item::Other(Other::Primitive(block.index[i])))
+            }
+            Kind::Other => match self.level.others[number] {
+                Other::Primitive(p) => {
+                    single::<ANY>(self.primitives, p, self.ray, &self.sheared, t_max, self.searcher)
+                }
+                Other::Instance(i) => self.searcher.instance::<L, ANY>(i, t_max),
+            },
+        }
+    }
+}
+
+/// Who asks a [`Level`].
+pub(super) trait Searcher {
+    /// Whether a candidate counts.
+    fn offer(&mut self, candidate: Candidate) -> bool;
+
+    /// Searches an instance, as [`Level::search`] does a level.
+    fn instance<L: Lanes, const ANY: bool>(&mut self, number: u32, t_max: &mut f32) -> bool;
+}
+
+/// Offers the hits of a block.
+#[inline(always)]
+fn take<const ANY: bool>(
+    mut hits: Hits,
+    t_max: &mut f32,
+    searcher: &mut impl Searcher,
+    piece: impl Fn(usize) -> Item,
+) -> bool {
+    while let Some((i, Intersection { t, u, v })) = hits.next() {
+        if t < *t_max && searcher.offer(Candidate { t, u, v, piece: piece(i) }) {
+            *t_max = t;
+            if ANY {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// Offers the hit of one primitive.
+#[inline(always)]
+fn single<const ANY: bool>(
+    primitives: &[Primitive],
+    number: u32,
+    ray: &Ray,
+    sheared: &ShearedRay,
+    t_max: &mut f32,
+    searcher: &mut impl Searcher,
+) -> bool {
+    let ray = Ray { t_max: *t_max, ..*ray };
+    let Some(Intersection { t, u, v }) = primitives[number as usize].intersect(&ray, sheared) else {
+        return false;
+    };
+    let piece = Item::Other(Other::Primitive(number));
+    if searcher.offer(Candidate { t, u, v, piece }) {
+        *t_max = t;
+        return ANY;
+    }
+    // A curved surface that is not there on the near side may be on the far one.
+    let near = Intersection { t, u, v };
+    let far = primitives[number as usize].beyond(&ray, &near, sheared);
+    if let Some(Intersection { t, u, v }) = far
+        && searcher.offer(Candidate { t, u, v, piece })
+    {
+        *t_max = t;
+        return ANY;
+    }
+    false
+}
