@@ -1,15 +1,15 @@
-use super::World;
+use super::{Aims, World};
 use crate::bvh::Bvh;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::light::{
-    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Light, LightKind, Spot, Target,
+    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Light, LightKind, Lookup, Spot, Target,
 };
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
-use crate::shape::{Geometry, Mesh, Primitive};
+use crate::shape::{Geometry, Mesh, Primitive, Shape};
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -41,6 +41,8 @@ impl World {
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let (emitters, emitter_of_shape) = emitters(&scene, &pieces, Target { center, radius });
+        let lookup = Lookup { meshes: &meshes, textures: &scene.textures };
+        let aims = Aims::new(&scene, &pieces, &emitters, &emitter_of_shape, lookup, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
         let invisible =
@@ -59,6 +61,7 @@ impl World {
             emitter_of_shape,
             camera,
             bounds,
+            aims,
         })
     }
 }
@@ -112,14 +115,25 @@ fn emitters(scene: &Scene, pieces: &[Vec<Primitive>], target: Target) -> (Vec<Em
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, shape) in scene.shapes.iter().enumerate() {
         let Some(radiance) = shape.emission else { continue };
-        if let Some(area) = AreaEmitter::new(pieces[i].clone(), radiance, shape.flip_normals) {
-            of_shape[i] = Some(emitters.len() as u32);
+        let index = emitters.len() as u32;
+        let convex = is_convex(shape).then_some(index);
+        if let Some(area) = AreaEmitter::new(pieces[i].clone(), radiance, shape.flip_normals, convex) {
+            of_shape[i] = Some(index);
             let power = area.power(&scene.textures);
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });
         }
     }
     emitters.extend(scene.lights.iter().filter_map(|light| emitter(scene, light, target)));
     (emitters, of_shape)
+}
+
+/// Whether light that leaves a shape cannot meet it again.
+fn is_convex(shape: &Shape) -> bool {
+    match shape.geometry {
+        Geometry::Rectangle | Geometry::Disk | Geometry::Plane => true,
+        Geometry::Sphere { .. } | Geometry::Cylinder { .. } | Geometry::Cube => !shape.flip_normals,
+        Geometry::Mesh(_) => false,
+    }
 }
 
 /// `None` for an environment without light.

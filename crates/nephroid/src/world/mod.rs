@@ -2,6 +2,9 @@
 //! and nothing that is done with it can fail.
 
 mod build;
+mod targets;
+
+pub(crate) use targets::Aims;
 
 use crate::bvh::Bvh;
 use crate::camera::CameraRays;
@@ -37,6 +40,7 @@ pub struct World {
     emitter_of_shape: Vec<Option<u32>>,
     camera: CameraRays,
     bounds: Bounds,
+    aims: Aims,
 }
 
 /// Where a ray meets a surface.
@@ -90,6 +94,11 @@ impl World {
 
     pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
         self.for_direct.as_ref()
+    }
+
+    /// What photons are aimed at.
+    pub(crate) fn aims(&self) -> &Aims {
+        &self.aims
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {
