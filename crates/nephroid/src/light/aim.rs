@@ -185,3 +185,99 @@ impl<'a> Disks<'a> {
         (!balls[..chosen].iter().any(covers)).then_some(point)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nephroid_testkit::{ALPHA, MeanTest, Pcg32, sidak};
+
+    fn ball(center: Vec3, radius: f32) -> Ball {
+        let r = Vec3::splat(radius);
+        Ball::around(center, radius, Bounds { min: center - r, max: center + r }, None)
+    }
+
+    /// Two balls, one partly before the other, and a third apart.
+    fn targets() -> Targets {
+        let at = |x, y, z, radius| ball(Vec3::new(x, y, z), radius);
+        Targets { balls: vec![at(0.0, 0.0, 5.0, 1.0), at(1.0, 0.5, 8.0, 1.5), at(-3.0, 0.0, 4.0, 0.7)] }
+    }
+
+    /// Estimates of the size of the union, and of the part of it that two balls share.
+    fn sizes(samples: usize, mut sample: impl FnMut() -> Option<[f64; 2]>) -> [MeanTest; 2] {
+        let mut tests = [MeanTest::new(); 2];
+        for _ in 0..samples {
+            let values = sample().unwrap_or_default();
+            tests.iter_mut().zip(values).for_each(|(test, value)| test.push(value));
+        }
+        tests
+    }
+
+    /// 1 for a member of the union, and 1 for a member of two.
+    fn count(members: usize) -> [f64; 2] {
+        [members.min(1) as f64, (members / 2) as f64]
+    }
+
+    /// That sample of a union of cones or disks that overlap against one of everything. On seeds chosen
+    /// afresh, correct code fails with probability 1 %. Each part on its own, as if the others were not
+    /// there, counts the shared part twice, and has to fail.
+    #[test]
+    fn what_overlaps_is_counted_once() {
+        let targets = targets();
+        let mut rng = Pcg32::new(3);
+        let mut u = move || Vec2::from_array(rng.vec2_f32());
+        let n = 200_000;
+
+        let cones =
+            |targets: &Targets| Cones::seen_from(targets, (Vec3::ZERO, 0.0), None, 2.0 * PI, |_, _| true);
+        let all = cones(&targets).unwrap();
+        let inside = |w: Vec3| count(all.list[..all.len].iter().filter(|cone| cone.contains(w)).count());
+        let exact = sizes(n, || Some(inside(warp::square_to_sphere(u())).map(|x| x * 4.0 * f64::from(PI))));
+        let aimed = |cones: Cones, u: &mut dyn FnMut() -> Vec2| {
+            let weight = f64::from(cones.solid_angle());
+            sizes(n / 4, || cones.sample(u().x, u()).map(|w| inside(w).map(|x| x * weight)))
+        };
+        let union = aimed(all, &mut u);
+        for (a, b) in exact.iter().zip(&union) {
+            assert!(a.welch(b).passes(sidak(ALPHA, 4)), "{}", a.welch(b));
+        }
+        let apart = targets.balls.iter().map(|&ball| cones(&Targets { balls: vec![ball] }).unwrap());
+        let planted: f64 = apart.map(|one| aimed(one, &mut u)[1].mean()).sum();
+        let error = 2.0 * exact[1].standard_error();
+        assert!((planted - exact[1].mean()).abs() > 10.0 * error, "{planted}");
+
+        let direction = Vec3::new(0.1, 0.05, 1.0).normalize();
+        let disks = Disks::new(&targets, 10.0).unwrap();
+        let frame = Frame::from_normal(direction);
+        let inside = |p: Vec3| {
+            let across = |b: &&Ball| frame.to_local(p - b.center).truncate().length() <= b.radius;
+            count(targets.balls.iter().filter(across).count())
+        };
+        let square = |u: Vec2| frame.to_world(((u - 0.5) * 20.0).extend(0.0));
+        let exact = sizes(n, || Some(inside(square(u())).map(|x| x * 400.0)));
+        let weight = f64::from(disks.area());
+        let union =
+            sizes(n / 4, || disks.sample(direction, u().x, u()).map(|p| inside(p).map(|x| x * weight)));
+        for (a, b) in exact.iter().zip(&union) {
+            assert!(a.welch(b).passes(sidak(ALPHA, 4)), "{}", a.welch(b));
+        }
+    }
+
+    #[test]
+    fn rays_that_meet_a_ball_meet_its_box() {
+        let targets = targets();
+        let mut rng = Pcg32::new(4);
+        let (mut met, mut missed) = (0, 0);
+        for _ in 0..10_000 {
+            let direction = warp::square_to_sphere(Vec2::from_array(rng.vec2_f32()));
+            let ray = Ray::new(Vec3::new(0.3, -0.2, 0.1), direction);
+            let meets = targets.balls.iter().any(|b| {
+                let to = b.center - ray.origin;
+                to.dot(direction) > 0.0 && to.cross(direction).length() < b.radius
+            });
+            met += u32::from(meets);
+            missed += u32::from(!targets.met_by(&ray));
+            assert!(!meets || targets.met_by(&ray), "{direction}");
+        }
+        assert!(met > 100 && missed > 5000);
+    }
+}
