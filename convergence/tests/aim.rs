@@ -113,7 +113,7 @@ const KINDS: [Kind; 14] = [
     ("rectangle", |b| glow(b, Geometry::Rectangle, place(0.5, 160.0, [0.5, -1.5, 6.0]))),
     ("disk", |b| glow(b, Geometry::Disk, place(0.7, 200.0, [-1.5, -0.5, 5.0]))),
     ("ball", |b| {
-        glow(b, Geometry::Sphere { center: Vec3::ZERO, radius: 0.4 }, place(1.0, 0.0, [2.0, 1.0, 5.0]))
+        glow(b, Geometry::Sphere { center: Vec3::ZERO, radius: 0.4 }, place(1.0, 0.0, [2.0, 1.0, 5.0]));
     }),
     ("ball among the glass", |b| {
         glow(b, Geometry::Sphere { center: Vec3::ZERO, radius: 0.15 }, place(1.0, 0.0, [-0.3, 0.1, 0.9]));

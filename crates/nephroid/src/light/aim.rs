@@ -111,8 +111,8 @@ impl Cones {
             let to = ball.center - center;
             let (reach, distance) = (ball.radius + radius, to.length());
             let sin = reach / distance;
-            // Also not where the distance is zero. Close by, the cone is all but half of the sphere.
-            if !(sin < 0.999) {
+            // In the middle there is no axis; close by, the cone is all but half of the sphere.
+            if distance == 0.0 || sin >= 0.999 {
                 return None;
             }
             let axis = to / distance;

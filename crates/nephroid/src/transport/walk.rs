@@ -122,7 +122,7 @@ fn start(
     let emission = emitter.emit(world.lookup(), u, aim.map(|aim| &aim.targets), sphere);
     let ray = match emission.surface {
         Some(point) => leave(&point, emission.ray.direction),
-        None if emitter.is_infinite() => aims.from_infinity(emission.ray),
+        None if emitter.is_infinite() => aims.before_planes(emission.ray),
         None => emission.ray,
     };
     let power = match aim {
@@ -137,10 +137,11 @@ fn start(
 /// and makes them carry so much more.
 fn level(power: Rgb, level: f32, u: f32) -> Rgb {
     let survival = power.mean() / (0.5 * level);
-    if !(survival < 1.0) {
-        return power;
+    match survival {
+        q if q >= 1.0 || power.is_black() => power,
+        q if u < q => power / q,
+        _ => Rgb::BLACK,
     }
-    if u < survival { power / survival } else { Rgb::BLACK }
 }
 
 /// A uniform direction by rejection (item 8 of the report, with the normalisation of E3): points of

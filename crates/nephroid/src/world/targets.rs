@@ -78,8 +78,8 @@ impl Aims {
         }
     }
 
-    /// A ray from infinitely far away that has not yet passed any infinite plane, which lie in no bounds.
-    pub fn from_infinity(&self, ray: Ray) -> Ray {
+    /// A ray from infinitely far away, begun before it passes any infinite plane: they lie in no bounds.
+    pub fn before_planes(&self, ray: Ray) -> Ray {
         let back = Ray::new(ray.origin, -ray.direction);
         let sheared = ShearedRay::new(back.direction);
         let distances =
