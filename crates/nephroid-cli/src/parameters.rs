@@ -180,6 +180,13 @@ pub const PARAMETERS: &[Parameter] = &[
         get: |c| name_of(SPHERE_SAMPLING, c.sphere_sampling),
     },
     Parameter {
+        name: "aim",
+        value: "BOOL",
+        help: "Send photons only where they can meet a surface (caustic ones: a specular one): true, false",
+        set: |d, v| boolean(v).map(|b| d.config.aim = b),
+        get: |c| json!(c.aim),
+    },
+    Parameter {
         name: "show",
         value: "PART",
         help: "What part of the light is drawn: all, direct, indirect, global, caustic",
@@ -347,6 +354,7 @@ mod tests {
         ("max-depth", "9"),
         ("light-choice", "equal"),
         ("sphere-sampling", "rejection"),
+        ("aim", "false"),
         ("show", "indirect"),
     ];
 

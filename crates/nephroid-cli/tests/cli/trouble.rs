@@ -101,6 +101,7 @@ fn a_map_that_emission_cannot_fill_is_told() {
         "500",
         "--emit-max",
         "2",
+        "--aim=false",
     ];
     let run = dir.run(&args).ends_with(0);
     assert_eq!(run.json()["photons"]["caustic"]["limited"], true);

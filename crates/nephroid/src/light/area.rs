@@ -1,11 +1,12 @@
 use std::f32::consts::PI;
 
-use super::emitter::{Emission, Incident, Lookup, Source};
+use super::aim::{Cones, Targets};
+use super::emitter::{Emission, EmissionNumbers, Incident, Lookup, Source};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Frame, Ray, Vec2, Vec3, warp};
 use crate::sampling::Discrete;
-use crate::shape::{Primitive, SurfacePoint};
+use crate::shape::{Primitive, Sphere, SurfacePoint};
 use crate::texture::{Texture, Textures};
 
 /// A surface that emits the same radiance in every direction of the side its normal points to.
@@ -16,14 +17,21 @@ pub(crate) struct AreaEmitter {
     area: f32,
     radiance: Handle<Texture>,
     flipped: bool,
+    /// Its own index, if none of its light can meet it.
+    convex: Option<u32>,
 }
 
 impl AreaEmitter {
     /// `None` if the pieces have no area.
-    pub fn new(pieces: Vec<Primitive>, radiance: Handle<Texture>, flipped: bool) -> Option<Self> {
+    pub fn new(
+        pieces: Vec<Primitive>,
+        radiance: Handle<Texture>,
+        flipped: bool,
+        convex: Option<u32>,
+    ) -> Option<Self> {
         let by_area = Discrete::new(pieces.iter().map(|p| f64::from(p.area())))?;
         let area = by_area.total() as f32;
-        Some(Self { pieces, by_area, area, radiance, flipped })
+        Some(Self { pieces, by_area, area, radiance, flipped, convex })
     }
 
     /// πAL with the texture's mean for L, in W; exact for constant radiance.
@@ -40,7 +48,7 @@ impl AreaEmitter {
 
     /// The sphere and 1 − cos of the cone it fills from `p`, if that is how `p` samples it: a sphere
     /// seen from outside that shines outward.
-    fn cone(&self, p: Vec3) -> Option<(&crate::shape::Sphere, f32)> {
+    fn cone(&self, p: Vec3) -> Option<(&Sphere, f32)> {
         match &self.pieces[..] {
             [Primitive::Sphere(sphere)] if !self.flipped => Some((sphere, sphere.cone_one_minus_cos(p)?)),
             _ => None,
@@ -82,14 +90,62 @@ impl AreaEmitter {
         if cos > 0.0 { distance_sq / (cos * self.area) } else { 0.0 }
     }
 
-    /// Uniform over the surface, cosine-distributed about its normal.
-    pub fn emit(&self, lookup: Lookup<'_>, u_position: Vec2, u_direction: Vec2) -> Emission {
-        let point = self.sample_point(lookup, u_position);
-        let direction = Frame::from_normal(point.ng).to_world(warp::square_to_cosine_hemisphere(u_direction));
+    /// Uniform over the surface, and cosine-distributed about its normal or, as far as they are less than
+    /// half of the hemisphere, uniform over the targets seen from there; `whole` is the power of the light.
+    pub fn emit(
+        &self,
+        lookup: Lookup<'_>,
+        u: EmissionNumbers,
+        targets: Option<&Targets>,
+        whole: Rgb,
+    ) -> Emission {
+        if let (Some(targets), [Primitive::Sphere(sphere)], false) = (targets, &self.pieces[..], self.flipped)
+        {
+            let ball = (sphere.center, sphere.radius);
+            if let Some(cones) = Cones::seen_from(targets, ball, self.convex, 2.0 * PI, |_, _| true) {
+                return self.emit_from_ball(lookup, u, sphere, &cones, whole);
+            }
+        }
+        let point = self.sample_point(lookup, u.position);
+        let exitance = lookup.textures.eval(self.radiance, point.uv) * (PI * self.area);
+        let above = |axis: Vec3, sin: f32| axis.dot(point.ng) > -sin;
+        let cones = targets.and_then(|t| Cones::seen_from(t, (point.position, 0.0), self.convex, PI, above));
+        let Some(cones) = cones else {
+            let local = warp::square_to_cosine_hemisphere(u.direction);
+            let direction = Frame::from_normal(point.ng).to_world(local);
+            return Emission::whole(Ray::new(point.position, direction), Some(point), exitance);
+        };
+        match cones.sample(u.target, u.direction).filter(|direction| direction.dot(point.ng) > 0.0) {
+            Some(direction) => Emission {
+                ray: Ray::new(point.position, direction),
+                surface: Some(point),
+                power: exitance * (direction.dot(point.ng) / PI * cones.solid_angle()),
+                emitted: exitance,
+            },
+            None => Emission::elsewhere(point.position, exitance),
+        }
+    }
+
+    /// The direction first, and then a point of the half that faces it, uniform as seen along it: all
+    /// points send the same, which points chosen first do not.
+    fn emit_from_ball(
+        &self,
+        lookup: Lookup<'_>,
+        u: EmissionNumbers,
+        sphere: &Sphere,
+        cones: &Cones,
+        whole: Rgb,
+    ) -> Emission {
+        let Some(direction) = cones.sample(u.target, u.direction) else {
+            return Emission::elsewhere(sphere.center, whole);
+        };
+        let normal = Frame::from_normal(direction).to_world(warp::square_to_cosine_hemisphere(u.position));
+        let point = sphere.point(normal.normalize());
         Emission {
             ray: Ray::new(point.position, direction),
             surface: Some(point),
-            power: lookup.textures.eval(self.radiance, point.uv) * (PI * self.area),
+            power: lookup.textures.eval(self.radiance, point.uv) * (0.25 * self.area * cones.solid_angle()),
+            emitted: whole,
         }
     }
 }

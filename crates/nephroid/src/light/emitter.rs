@@ -1,3 +1,6 @@
+use std::f32::consts::PI;
+
+use super::aim::{Cones, Disks, Targets};
 use super::area::AreaEmitter;
 use super::environment::{ConstantSky, EnvironmentMap};
 use super::spot::Spot;
@@ -39,8 +42,33 @@ pub struct Emission {
     pub ray: Ray,
     /// The point of an area light that the path must be moved off.
     pub surface: Option<SurfacePoint>,
-    /// Emitted power over the density of the sample, in W: its mean is the emitter's power.
+    /// Emitted power over the density of the sample, in W: its mean is what the emitter sends where it
+    /// was aimed. Black where nothing starts.
     pub power: Rgb,
+    /// What the sample stands for of all that the emitter gives off, in W. The mean of what it exceeds
+    /// `power` by is what goes elsewhere; where nothing was aimed they are the same.
+    pub emitted: Rgb,
+}
+
+impl Emission {
+    /// One that was not aimed.
+    pub(super) fn whole(ray: Ray, surface: Option<SurfacePoint>, power: Rgb) -> Self {
+        Self { ray, surface, power, emitted: power }
+    }
+
+    /// One that falls to no target, or whose direction has had its turn.
+    pub(super) fn elsewhere(origin: Vec3, emitted: Rgb) -> Self {
+        Self { ray: Ray::new(origin, Vec3::Z), surface: None, power: Rgb::BLACK, emitted }
+    }
+}
+
+/// The random numbers of an emission.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EmissionNumbers {
+    pub position: Vec2,
+    pub direction: Vec2,
+    /// For the choice among targets.
+    pub target: f32,
 }
 
 /// What emitters look up: meshes in world space and textures.
@@ -90,7 +118,37 @@ pub(crate) struct Target {
 impl Target {
     /// Area of its silhouette, m².
     pub fn silhouette(&self) -> f32 {
-        std::f32::consts::PI * self.radius * self.radius
+        PI * self.radius * self.radius
+    }
+
+    /// A ray along `direction` through a point, from before the sphere.
+    pub fn ray_through(&self, point: Vec3, direction: Vec3) -> Ray {
+        let back = (point - self.center).dot(direction) + self.radius;
+        Ray::new(point - direction * back, direction)
+    }
+
+    /// Starts light of an infinitely far emitter along `direction`, with `flux` (W/m²) on a plane facing
+    /// it: aimed where targets cover less than the sphere does.
+    pub fn emit(
+        &self,
+        direction: Vec3,
+        flux: Rgb,
+        u: EmissionNumbers,
+        targets: Option<&Targets>,
+    ) -> Emission {
+        let whole = flux * self.silhouette();
+        let Some(disks) = targets.and_then(|targets| Disks::new(targets, self.radius)) else {
+            return Emission::whole(self.ray(direction, u.position), None, whole);
+        };
+        match disks.sample(direction, u.target, u.position) {
+            Some(point) => Emission {
+                ray: self.ray_through(point, direction),
+                surface: None,
+                power: flux * disks.area(),
+                emitted: whole,
+            },
+            None => Emission::elsewhere(self.center, whole),
+        }
     }
 
     /// A ray along `direction` from a point of the disk before the sphere, uniformly by area.
@@ -157,29 +215,44 @@ impl Emitter {
         matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))
     }
 
-    /// Starts a photon path. `sphere` gives directions for lights that shine everywhere.
+    /// Whether its light comes from infinitely far away.
+    pub fn is_infinite(&self) -> bool {
+        self.is_sky() || matches!(self.kind, EmitterKind::Directional { .. })
+    }
+
+    /// Starts a photon path, at the targets if it is aimed and they fill less than half of what it
+    /// shines at. `sphere` gives directions for lights that shine everywhere.
     pub fn emit(
         &self,
         lookup: Lookup<'_>,
-        u_position: Vec2,
-        u_direction: Vec2,
+        u: EmissionNumbers,
+        targets: Option<&Targets>,
         sphere: impl FnOnce(Vec2) -> Vec3,
     ) -> Emission {
         match &self.kind {
-            EmitterKind::Area(area) => area.emit(lookup, u_position, u_direction),
-            EmitterKind::Point { position, intensity } => Emission {
-                ray: Ray::new(*position, sphere(u_direction)),
-                surface: None,
-                power: *intensity / warp::SPHERE_PDF,
-            },
-            EmitterKind::Spot(spot) => spot.emit(lookup.textures, u_direction),
-            EmitterKind::Directional { direction, irradiance, target } => Emission {
-                ray: target.ray(*direction, u_position),
-                surface: None,
-                power: *irradiance * target.silhouette(),
-            },
-            EmitterKind::Constant(sky) => sky.emit(u_position, sphere(u_direction)),
-            EmitterKind::Environment(map) => map.emit(lookup.textures, u_position, u_direction),
+            EmitterKind::Area(area) => area.emit(lookup, u, targets, self.power),
+            EmitterKind::Point { position, intensity } => {
+                let cones =
+                    targets.and_then(|t| Cones::seen_from(t, (*position, 0.0), None, 2.0 * PI, |_, _| true));
+                let Some(cones) = cones else {
+                    return Emission::whole(Ray::new(*position, sphere(u.direction)), None, self.power);
+                };
+                match cones.sample(u.target, u.direction) {
+                    Some(direction) => Emission {
+                        ray: Ray::new(*position, direction),
+                        surface: None,
+                        power: *intensity * cones.solid_angle(),
+                        emitted: self.power,
+                    },
+                    None => Emission::elsewhere(*position, self.power),
+                }
+            }
+            EmitterKind::Spot(spot) => spot.emit(lookup.textures, u, targets, self.power),
+            EmitterKind::Directional { direction, irradiance, target } => {
+                target.emit(*direction, *irradiance, u, targets)
+            }
+            EmitterKind::Constant(sky) => sky.emit(u, targets, sphere(u.direction)),
+            EmitterKind::Environment(map) => map.emit(lookup.textures, u, targets),
         }
     }
 }

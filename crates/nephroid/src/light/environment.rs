@@ -1,6 +1,7 @@
 use std::f32::consts::PI;
 
-use super::emitter::{Emission, Incident, Source, Target};
+use super::aim::Targets;
+use super::emitter::{Emission, EmissionNumbers, Incident, Source, Target};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::real::{atan2, sin_cos};
@@ -25,8 +26,8 @@ impl ConstantSky {
     }
 
     /// Starts in a direction uniform over the sphere.
-    pub fn emit(&self, u_position: Vec2, direction: Vec3) -> Emission {
-        Emission { ray: self.target.ray(direction, u_position), surface: None, power: self.power() }
+    pub fn emit(&self, u: EmissionNumbers, targets: Option<&Targets>, direction: Vec3) -> Emission {
+        self.target.emit(direction, self.radiance * (4.0 * PI), u, targets)
     }
 }
 
@@ -139,14 +140,10 @@ impl EnvironmentMap {
         (sin_theta > 0.0 && pdf > 0.0).then(|| incident(wi, self.texture(textures, uv), pdf))
     }
 
-    pub fn emit(&self, textures: &Textures, u_position: Vec2, u_direction: Vec2) -> Emission {
-        match self.sample_incident(textures, u_direction) {
-            Some(from) => Emission {
-                ray: self.target.ray(-from.wi, u_position),
-                surface: None,
-                power: from.radiance * (self.target.silhouette() / from.pdf_solid_angle),
-            },
-            None => Emission { ray: self.target.ray(Vec3::Z, u_position), surface: None, power: Rgb::BLACK },
+    pub fn emit(&self, textures: &Textures, u: EmissionNumbers, targets: Option<&Targets>) -> Emission {
+        match self.sample_incident(textures, u.direction) {
+            Some(from) => self.target.emit(-from.wi, from.radiance / from.pdf_solid_angle, u, targets),
+            None => Emission::elsewhere(self.target.center, Rgb::BLACK),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Lights. A [`Light`] is what the scene says of a light without a surface; area lights are shapes
 //! with an emission. Either becomes an emitter of the world.
 
+mod aim;
 mod area;
 mod emitter;
 mod environment;
@@ -9,9 +10,10 @@ mod spot;
 #[cfg(test)]
 mod sampling_tests;
 
+pub(crate) use aim::{Ball, MAX_BALLS, Targets};
 pub(crate) use area::AreaEmitter;
 pub use emitter::{Emission, Incident, Source, SphereSampling};
-pub(crate) use emitter::{Emitter, EmitterKind, Lookup, Target};
+pub(crate) use emitter::{EmissionNumbers, Emitter, EmitterKind, Lookup, Target};
 pub(crate) use environment::{ConstantSky, EnvironmentMap};
 pub(crate) use spot::Spot;
 

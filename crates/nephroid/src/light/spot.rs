@@ -1,9 +1,10 @@
 use std::f32::consts::PI;
 
-use super::emitter::Emission;
+use super::aim::{Cones, Targets};
+use super::emitter::{Emission, EmissionNumbers};
 use crate::color::Rgb;
 use crate::handle::Handle;
-use crate::math::real::{atan2, sin, tan};
+use crate::math::real::{atan2, cos, sin, tan};
 use crate::math::{Frame, Ray, Transform, Vec2, Vec3, warp};
 use crate::texture::{Texture, Textures};
 
@@ -74,15 +75,48 @@ impl Spot {
         self.peak * tint * (2.0 * PI * (drop + (1.0 - drop) * flattened))
     }
 
-    /// Uniform over the solid angle of the cone.
-    pub fn emit(&self, textures: &Textures, u: Vec2) -> Emission {
+    /// Uniform over the solid angle of the cone, or over those of the targets that it overlaps if they
+    /// are less than half of it; `whole` is the power of the light.
+    pub fn emit(
+        &self,
+        textures: &Textures,
+        u: EmissionNumbers,
+        targets: Option<&Targets>,
+        whole: Rgb,
+    ) -> Emission {
         let width = warp::one_minus_cos(self.cutoff);
-        let direction = self.frame.to_world(warp::square_to_cone(u, width)).normalize();
-        Emission {
-            ray: Ray::new(self.position, direction),
-            surface: None,
-            power: self.intensity(textures, direction) / warp::square_to_cone_pdf(width),
+        let Some(cones) = targets.and_then(|targets| self.cones(targets, PI * width)) else {
+            let direction = self.frame.to_world(warp::square_to_cone(u.direction, width)).normalize();
+            let power = self.intensity(textures, direction) / warp::square_to_cone_pdf(width);
+            return Emission::whole(Ray::new(self.position, direction), None, power);
+        };
+        match cones.sample(u.target, u.direction) {
+            Some(direction) => Emission {
+                ray: Ray::new(self.position, direction),
+                surface: None,
+                power: self.intensity(textures, direction) * cones.solid_angle(),
+                emitted: whole,
+            },
+            None => Emission::elsewhere(self.position, whole),
         }
+    }
+
+    /// The targets that overlap the cone, unless they fill more than `limit`.
+    fn cones(&self, targets: &Targets, limit: f32) -> Option<Cones> {
+        let (sin_cutoff, cos_cutoff) = (sin(self.cutoff), cos(self.cutoff));
+        let overlaps = |axis: Vec3, sin_half: f32| {
+            // Their axes are closer than the sum of the two angles; the margin is for rounding.
+            let cos_half = (1.0 - sin_half * sin_half).sqrt();
+            let (cos_sum, sin_sum) = (
+                cos_cutoff * cos_half - sin_cutoff * sin_half,
+                sin_cutoff * cos_half + cos_cutoff * sin_half,
+            );
+            let local = self.frame.to_local(axis);
+            let across = Vec2::new(local.x, local.y).length();
+            // The sine of the sum less the angle between the axes; all are below 180°.
+            sin_sum * local.z - cos_sum * across >= -1e-4
+        };
+        Cones::seen_from(targets, (self.position, 0.0), None, limit, overlaps)
     }
 }
 
@@ -90,6 +124,10 @@ impl Spot {
 mod tests {
     use super::*;
     use crate::math::DVec3;
+
+    fn numbers(direction: Vec2) -> EmissionNumbers {
+        EmissionNumbers { position: Vec2::ZERO, direction, target: 0.0 }
+    }
 
     /// The power of a cone of small angle θ is π θ² and of one that fades all the way a third of it;
     /// the mean over emitted light is the same.
@@ -105,7 +143,10 @@ mod tests {
                 assert!((f64::from(spot.power(&textures).g) / exact - 1.0).abs() < 1e-4);
                 let n = 64u16;
                 let grid = (0..n * n).map(|i| Vec2::new(f32::from(i / n), f32::from(i % n)) + 0.5);
-                let sum: f64 = grid.map(|u| f64::from(spot.emit(&textures, u / f32::from(n)).power.g)).sum();
+                let sum: f64 = grid
+                    .map(|u| spot.emit(&textures, numbers(u / f32::from(n)), None, Rgb::BLACK))
+                    .map(|emission| f64::from(emission.power.g))
+                    .sum();
                 let mean = sum / f64::from(n * n);
                 assert!((mean / exact - 1.0).abs() < 0.01, "{cutoff_deg}: {mean} of {exact}");
             }

@@ -47,7 +47,8 @@ impl Sphere {
         self.point(n)
     }
 
-    fn point(&self, n: Vec3) -> SurfacePoint {
+    /// The point with a given outward normal.
+    pub fn point(&self, n: Vec3) -> SurfacePoint {
         let local = Vec3::from_array(self.axes.map(|a| n.dot(a)));
         SurfacePoint {
             position: self.center + n * self.radius,

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::ledger::Ledger;
-use super::walk::{LightChoice, Next, PhotonKind, WalkSettings, walk};
+use super::walk::{LightChoice, MapKind, Next, PhotonKind, WalkSettings, walk};
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::{Photon, Photons};
 use crate::sampling::{Key, Sampler, Sequence, Stream};
@@ -21,7 +21,7 @@ const BATCH: usize = 512;
 /// The pilot goes on until it has counted so many photons for each map, which tells their number per
 /// path to 3 %…
 const PILOT_PHOTONS: u64 = 1024;
-/// … or has traced so many paths.
+/// … or has traced so many paths. If these bring nothing, no more are emitted: any number is unbiased.
 const PILOT_PATHS: u64 = 1 << 18;
 
 /// How many photons are wanted.
@@ -101,25 +101,24 @@ impl PhotonPlan {
             let plan = |wanted| MapPlan { paths: if wanted { paths } else { 0 }, ..MapPlan::default() };
             return Self { global: plan(targets.global > 0), caustic: plan(caustics && targets.caustic > 0) };
         }
-        let (paths, global, caustic) = count(world, settings, targets, caustics, seed);
-        let plan = |target: u64, counted: u64| {
+        let plan = |map, target: u64| {
+            if target == 0 {
+                return MapPlan::default();
+            }
+            let (paths, counted) = count(world, settings, map, targets.store_direct, seed);
             let most = target.saturating_mul(targets.emit_max);
             let per_path = counted as f64 / paths as f64;
-            let needed = match (target, counted) {
-                (0, _) => 0,
-                (_, 0) => u64::MAX,
-                _ => (target as f64 / per_path).ceil() as u64,
-            };
+            let needed = if counted == 0 { paths } else { (target as f64 / per_path).ceil() as u64 };
             let emitted = round_up(needed.min(most), world, settings);
             MapPlan {
                 paths: emitted,
                 expected_photons: (emitted as f64 * per_path) as u64,
-                limited: needed > most,
+                limited: needed > most || counted == 0,
             }
         };
         Self {
-            global: plan(targets.global, global),
-            caustic: if caustics { plan(targets.caustic, caustic) } else { MapPlan::default() },
+            global: plan(MapKind::Global, targets.global),
+            caustic: plan(MapKind::Caustic, if caustics { targets.caustic } else { 0 }),
         }
     }
 }
@@ -132,45 +131,34 @@ fn round_up(paths: u64, world: &World, settings: &WalkSettings) -> u64 {
     }
 }
 
-/// Trial paths: how many were traced, and how many photons for each map they would have stored.
-fn count(
-    world: &World,
-    settings: &WalkSettings,
-    targets: &PhotonTargets,
-    caustics: bool,
-    seed: u64,
-) -> (u64, u64, u64) {
-    let key = Key::new(seed, 0, Stream::Pilot);
-    let (mut paths, mut global, mut caustic) = (0, 0, 0);
+/// Trial paths for a map: how many were traced, and how many photons they would have stored.
+fn count(world: &World, settings: &WalkSettings, map: MapKind, store_direct: bool, seed: u64) -> (u64, u64) {
+    let key = Key::new(seed, 0, Stream::Pilot).with(map as u64);
+    let (mut paths, mut counted) = (0, 0);
     let mut batch = 2 * CHUNK;
     loop {
-        let counts: Vec<(u64, u64)> = (paths / CHUNK..(paths + batch) / CHUNK)
-            .into_par_iter()
-            .map(|chunk| {
-                let mut books = Ledger::new(world.light_count());
-                let mut stored = (0, 0);
-                for path in chunk * CHUNK..(chunk + 1) * CHUNK {
-                    let mut sampler = Sampler::new(Sequence::Independent, key, path);
-                    walk(world, settings, path, &mut sampler, &mut books.lights, |_, kind| {
-                        match kind {
-                            PhotonKind::Caustic => stored.1 += 1,
-                            PhotonKind::Global | PhotonKind::Afterglow => stored.0 += 1,
-                            PhotonKind::Direct => stored.0 += u64::from(targets.store_direct),
-                        }
-                        Next::Continue
-                    });
-                }
-                stored
-            })
-            .collect();
+        let trial = |chunk| {
+            let mut books = Ledger::new(world.light_count());
+            let mut stored = 0;
+            for path in chunk * CHUNK..(chunk + 1) * CHUNK {
+                let mut sampler = Sampler::new(Sequence::Independent, key, path);
+                walk(world, settings, map, path, &mut sampler, &mut books.lights, |_, kind| {
+                    let (counts, next) = match (map, kind) {
+                        (MapKind::Global, PhotonKind::Direct) => (store_direct, Next::Continue),
+                        (MapKind::Global, kind) => (kind != PhotonKind::Caustic, Next::Continue),
+                        (MapKind::Caustic, kind) => (kind == PhotonKind::Caustic, Next::Stop),
+                    };
+                    stored += u64::from(counts);
+                    next
+                });
+            }
+            stored
+        };
+        let chunks = paths / CHUNK..(paths + batch) / CHUNK;
+        counted += chunks.into_par_iter().map(trial).sum::<u64>();
         paths += batch;
-        global += counts.iter().map(|c| c.0).sum::<u64>();
-        caustic += counts.iter().map(|c| c.1).sum::<u64>();
-        let enough = |target: u64, counted: u64| counted >= PILOT_PHOTONS || target == 0;
-        if (enough(targets.global, global) && (!caustics || enough(targets.caustic, caustic)))
-            || paths >= PILOT_PATHS
-        {
-            return (paths, global, caustic);
+        if counted >= PILOT_PHOTONS || paths >= PILOT_PATHS {
+            return (paths, counted);
         }
         batch = paths;
     }
@@ -190,7 +178,7 @@ pub fn photon_pass(
     let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
     let global_key = Key::new(seed, iteration, Stream::GlobalPhotons);
     let ([global, _], ledger) =
-        emit(world, settings, plan.global.paths, global_key, &work, |kind| match kind {
+        emit(world, settings, MapKind::Global, plan.global.paths, global_key, &work, |kind| match kind {
             PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
             PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
             PhotonKind::Caustic => (None, Next::Continue),
@@ -198,7 +186,7 @@ pub fn photon_pass(
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
     let beyond = if extras.afterglow { Next::Continue } else { Next::Stop };
     let ([caustic, afterglow], _) =
-        emit(world, settings, plan.caustic.paths, caustic_key, &work, |kind| match kind {
+        emit(world, settings, MapKind::Caustic, plan.caustic.paths, caustic_key, &work, |kind| match kind {
             PhotonKind::Caustic => (Some(0), beyond),
             PhotonKind::Afterglow => (Some(1), Next::Stop),
             // Whatever else follows is the global map's.
@@ -211,6 +199,7 @@ pub fn photon_pass(
 fn emit(
     world: &World,
     settings: &WalkSettings,
+    map: MapKind,
     paths: u64,
     key: Key,
     work: &Work<'_>,
@@ -224,7 +213,7 @@ fn emit(
             .into_par_iter()
             .map(|chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-                trace(world, settings, range, key, work, &keep)
+                trace(world, settings, map, range, key, work, &keep)
             })
             .collect();
         for (stored, books) in traced {
@@ -244,6 +233,7 @@ fn emit(
 fn trace(
     world: &World,
     settings: &WalkSettings,
+    map: MapKind,
     paths: Range<u64>,
     key: Key,
     work: &Work<'_>,
@@ -257,7 +247,7 @@ fn trace(
     ledger.paths = paths.end - paths.start;
     for path in paths {
         let mut sampler = Sampler::new(Sequence::Independent, key, path);
-        walk(world, settings, path, &mut sampler, &mut ledger.lights, |photon, kind| {
+        walk(world, settings, map, path, &mut sampler, &mut ledger.lights, |photon, kind| {
             let (list, next) = keep(kind);
             if let Some(list) = list {
                 stored[list].push(photon);

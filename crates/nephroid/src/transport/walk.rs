@@ -3,7 +3,7 @@
 use super::ledger::Balance;
 use super::roulette::survival;
 use crate::color::Rgb;
-use crate::light::SphereSampling;
+use crate::light::{EmissionNumbers, SphereSampling};
 use crate::material::Transport;
 use crate::math::{Ray, Vec2, Vec3, warp};
 use crate::photon_map::Photon;
@@ -21,14 +21,37 @@ pub enum LightChoice {
 }
 
 /// What governs photon walks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkSettings {
     /// Segments a photon path may have; `None` without end.
     pub max_photon_depth: Option<u32>,
     /// How paths are shared out among lights.
     pub light_choice: LightChoice,
-    /// How directions of lights that shine everywhere are sampled.
+    /// How directions of lights that shine everywhere are sampled, where they are not aimed.
     pub sphere_sampling: SphereSampling,
+    /// Whether light is sent only where it can meet something that counts for the map. The rest is
+    /// booked as escaped without being traced.
+    pub aim: bool,
+}
+
+impl Default for WalkSettings {
+    fn default() -> Self {
+        Self {
+            max_photon_depth: None,
+            light_choice: LightChoice::default(),
+            sphere_sampling: SphereSampling::default(),
+            aim: true,
+        }
+    }
+}
+
+/// The map that paths are traced for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MapKind {
+    /// All light.
+    Global,
+    /// Light that meets a specular surface first.
+    Caustic,
 }
 
 /// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
@@ -53,22 +76,41 @@ pub(super) enum Next {
     Stop,
 }
 
-/// The start of path `path`: the light, the ray, and the power in W as if the path were alone.
+/// The start of a path.
+struct Start {
+    light: usize,
+    ray: Ray,
+    /// W, as if the path were alone. Black if nothing starts.
+    power: Rgb,
+    /// What it stands for of all the light that is given off, in W.
+    emitted: Rgb,
+}
+
+/// Starts path `path`; `None` if there is no light.
 fn start(
     world: &World,
     settings: &WalkSettings,
+    map: MapKind,
     path: u64,
     sampler: &mut Sampler,
-) -> Option<(usize, Ray, Rgb)> {
-    let table = world.lights_by_power()?;
-    let (u_direction, u_position, u_light) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
+) -> Option<Start> {
+    let aims = world.aims();
+    let aim = match map {
+        _ if !settings.aim => None,
+        MapKind::Global => aims.global.as_ref(),
+        MapKind::Caustic => aims.caustic.as_ref(),
+    };
+    let (direction, position) = (sampler.next_2d(), sampler.next_2d());
+    let (u_light, target, u_level) = (sampler.next_1d(), sampler.next_1d(), sampler.next_1d());
     let (light, probability) = match settings.light_choice {
         LightChoice::Power => {
+            let table = aim.map(|aim| &aim.lights).or(world.lights_by_power())?;
             let (light, probability, _) = table.sample(u_light);
             (light, probability)
         }
         LightChoice::Equal => {
-            let n = table.len();
+            let n = world.light_count();
+            world.lights_by_power()?;
             ((path % n as u64) as usize, 1.0 / n as f32)
         }
     };
@@ -76,12 +118,30 @@ fn start(
         SphereSampling::SolidAngle => warp::square_to_sphere(u),
         SphereSampling::Rejection => rejection_sphere(sampler),
     };
-    let emission = world.emitters()[light].emit(world.lookup(), u_position, u_direction, sphere);
+    let (emitter, u) = (&world.emitters()[light], EmissionNumbers { position, direction, target });
+    let emission = emitter.emit(world.lookup(), u, aim.map(|aim| &aim.targets), sphere);
     let ray = match emission.surface {
         Some(point) => leave(&point, emission.ray.direction),
+        None if emitter.is_infinite() => aims.before_planes(emission.ray),
         None => emission.ray,
     };
-    Some((light, ray, emission.power / probability))
+    let power = match aim {
+        Some(aim) if !aim.keeps(&ray) => Rgb::BLACK,
+        Some(aim) if emission.power != emission.emitted => level(emission.power, aim.levels[light], u_level),
+        _ => emission.power,
+    };
+    Some(Start { light, ray, power: power / probability, emitted: emission.emitted / probability })
+}
+
+/// Keeps photons that carry much less than others of their light with so much lower a probability,
+/// and makes them carry so much more.
+fn level(power: Rgb, level: f32, u: f32) -> Rgb {
+    let survival = power.mean() / (0.5 * level);
+    match survival {
+        q if q >= 1.0 || power.is_black() => power,
+        q if u < q => power / q,
+        _ => Rgb::BLACK,
+    }
 }
 
 /// A uniform direction by rejection (item 8 of the report, with the normalisation of E3): points of
@@ -132,18 +192,24 @@ impl History {
 }
 
 /// Walks photon path `path`, showing every photon that lands on a surface with a density to
-/// estimate to `visit`, and books where the power goes with the light it came from.
+/// estimate to `visit`, and books where the power goes with the light it came from. What `map` has no
+/// use for, from the start on, may be left out.
 pub(super) fn walk(
     world: &World,
     settings: &WalkSettings,
+    map: MapKind,
     path: u64,
     sampler: &mut Sampler,
     books: &mut [Balance],
     mut visit: impl FnMut(Photon, PhotonKind) -> Next,
 ) {
-    let Some((light, mut ray, mut power)) = start(world, settings, path, sampler) else { return };
+    let Some(Start { light, mut ray, mut power, emitted }) = start(world, settings, map, path, sampler)
+    else {
+        return;
+    };
     let book = &mut books[light];
-    book.emit(power);
+    book.emit(emitted);
+    book.escape(emitted - power);
     if power.is_black() {
         return;
     }

@@ -1,7 +1,7 @@
 use super::level::{Item, Level, Other};
 use super::placed::Placed;
 use super::scenery::Scenery;
-use super::{Surfaced, World};
+use super::{Aims, Surfaced, World};
 use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
@@ -32,6 +32,7 @@ impl World {
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let (emitters, emitter_of_shape) = emitters(&scene, pieces_of_lamps, Target { center, radius });
+        let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
         let surfaces: Vec<Surfaced> = all_shapes(&scene)
@@ -61,6 +62,7 @@ impl World {
             for_direct,
             camera,
             bounds,
+            aims,
         })
     }
 }
@@ -223,14 +225,25 @@ fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> (Vec<
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, (shape, pieces)) in scene.shapes.iter().zip(pieces).enumerate() {
         let Some(radiance) = shape.emission else { continue };
-        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals) {
-            of_shape[i] = Some(emitters.len() as u32);
+        let index = emitters.len() as u32;
+        let convex = is_convex(shape).then_some(index);
+        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals, convex) {
+            of_shape[i] = Some(index);
             let power = area.power(&scene.textures);
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });
         }
     }
     emitters.extend(scene.lights.iter().filter_map(|light| emitter(scene, light, target)));
     (emitters, of_shape)
+}
+
+/// Whether light that leaves a shape cannot meet it again.
+fn is_convex(shape: &Shape) -> bool {
+    match shape.geometry {
+        Geometry::Rectangle | Geometry::Disk | Geometry::Plane => true,
+        Geometry::Sphere { .. } | Geometry::Cylinder { .. } | Geometry::Cube => !shape.flip_normals,
+        Geometry::Mesh(_) => false,
+    }
 }
 
 /// `None` for an environment without light.

@@ -8,8 +8,11 @@ mod cutout_tests;
 mod level;
 mod placed;
 mod scenery;
+mod targets;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use targets::Aims;
 
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
@@ -41,6 +44,7 @@ pub struct World {
     for_direct: Option<Discrete>,
     camera: CameraRays,
     bounds: Bounds,
+    aims: Aims,
 }
 
 /// What rays ask of a shape.
@@ -129,6 +133,11 @@ impl World {
 
     pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
         self.for_direct.as_ref()
+    }
+
+    /// What photons are aimed at.
+    pub(crate) fn aims(&self) -> &Aims {
+        &self.aims
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {

@@ -35,8 +35,11 @@ pub struct PhotonMapperConfig {
     pub max_depth: Option<u32>,
     /// Which lights photon paths start from.
     pub light_choice: LightChoice,
-    /// How lights that shine everywhere are sampled.
+    /// How lights that shine everywhere are sampled, where they are not aimed.
     pub sphere_sampling: SphereSampling,
+    /// Whether photons are sent only where they can meet a surface, those for the caustic map only where
+    /// they can meet a specular one.
+    pub aim: bool,
     /// What part of the light the picture shows.
     pub show: Show,
 }
@@ -59,6 +62,7 @@ impl Default for PhotonMapperConfig {
             max_depth: None,
             light_choice: LightChoice::Power,
             sphere_sampling: SphereSampling::SolidAngle,
+            aim: true,
             show: Show::All,
         }
     }
@@ -111,6 +115,7 @@ impl PhotonMapperConfig {
             max_photon_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),
             light_choice: self.light_choice,
             sphere_sampling: self.sphere_sampling,
+            aim: self.aim,
         }
     }
 
