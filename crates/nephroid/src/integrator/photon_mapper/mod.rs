@@ -7,11 +7,11 @@ mod estimate;
 mod guide;
 
 pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show};
-pub(crate) use estimate::{PhotonMapper, Scratch};
+pub(crate) use estimate::PhotonMapper;
 
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::PhotonMap;
-use crate::transport::{Extras, Ledger, PhotonPlan, photon_pass};
+use crate::transport::{Ledger, PhotonPlan, photon_pass};
 use crate::world::World;
 
 /// The photon maps of one iteration.
@@ -34,8 +34,8 @@ impl Maps {
         iteration: u64,
         observer: &dyn Observer,
     ) -> Option<Self> {
-        let extras = Extras { direct: config.direct == DirectSource::Map, afterglow: gathers };
         let settings = config.walk_settings();
+        let extras = config.extras(gathers);
         let pass = photon_pass(world, &settings, plan, extras, seed, iteration, observer)?;
         let work = Work::begin(observer, Phase::Maps, 3);
         let build = |photons| {
