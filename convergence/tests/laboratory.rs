@@ -86,7 +86,7 @@ fn an_inspected_pixel_is_that_of_the_render_to_the_bit() {
     let world = room();
     for method in methods() {
         let image = rendered(&world, &method, 2, &[]).film().develop();
-        for (x, y) in [(0, 0), (3, 9), (7, 8), (6, 5), (SIDE - 1, SIDE - 1)] {
+        for (x, y) in [(0, 0), (3, 9), (7, 8)] {
             let mut inspector = Inspector::new(&world, settings(&method), (x, y), &Silent);
             while inspector.iterations() < 2 {
                 assert!(inspector.step(&Silent), "nothing cancels");
@@ -128,7 +128,7 @@ fn what_rays_and_photons_bring_adds_up_to_each_sample() {
     let world = room();
     let (mut photons, mut gathered) = (0, 0);
     for method in methods() {
-        for pixel in [(3, 9), (7, 8), (6, 5)] {
+        for pixel in [(3, 9), (7, 8)] {
             let mut inspector = Inspector::new(&world, settings(&method), pixel, &Silent);
             while inspector.iterations() < 1 {
                 assert!(inspector.step(&Silent), "nothing cancels");

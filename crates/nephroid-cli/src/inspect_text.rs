@@ -11,6 +11,7 @@ use nephroid::transport::Bounces;
 
 use crate::inspect::Inspected;
 use crate::inspect_json::part;
+use crate::report::plural;
 
 /// The pixel, and each sample. Gather rays are summed up, but for a sample that was asked for alone.
 pub fn text(inspected: &Inspected<'_>) -> String {
@@ -20,10 +21,10 @@ pub fn text(inspected: &Inspected<'_>) -> String {
     // Writing into a string cannot fail.
     let _ = writeln!(
         out,
-        "{}, pixel {x},{y}: {} samples in {} passes, {}",
+        "{}, pixel {x},{y}: {} in {}, {}",
         inspected.scene,
-        report.samples.len(),
-        inspected.passes,
+        plural(report.samples.len() as u64, "sample"),
+        plural(inspected.passes, "pass"),
         inspected.settings.method.name()
     );
     let _ = writeln!(out, "radiance  {}  W/(m2 sr)", rgb(report.radiance));
@@ -76,7 +77,13 @@ fn surface(
     let indent = format!("{indent}  ");
     lights(out, sample, Some(number), &indent);
     for l in sample.look_ups.iter().filter(|l| l.surface == number) {
-        let _ = writeln!(out, "{indent}{} map: {} photons within {}", l.map.name(), l.count, l.radius);
+        let _ = writeln!(
+            out,
+            "{indent}{} map: {} within {}",
+            l.map.name(),
+            plural(u64::from(l.count), "photon"),
+            l.radius
+        );
         for c in &l.contributions {
             contribution(out, inspected, &indent, (c.light, c.bounces), (c.photons, c.radiance, c.part));
         }
@@ -101,10 +108,11 @@ fn contribution(
     let light = inspected.light(light);
     let _ = writeln!(
         out,
-        "{indent}  {:<10} from \"{light}\": {} of {photons} photons, {}",
+        "{indent}  {:<8} from \"{light}\": {} {} by {}",
         bounces.to_string(),
+        part(name),
         rgb(radiance),
-        part(name)
+        plural(u64::from(photons), "photon")
     );
 }
 
@@ -125,9 +133,9 @@ fn gathered(out: &mut String, inspected: &Inspected<'_>, sample: &InspectedSampl
         .sum();
     let _ = writeln!(
         out,
-        "  {} gather rays met surfaces and made {} look-ups (--sample tells of each)",
-        rays.len(),
-        look_ups.len()
+        "  {} met surfaces and made {} (--sample tells of each)",
+        plural(rays.len() as u64, "gather ray"),
+        plural(look_ups.len() as u64, "look-up")
     );
     let _ = writeln!(out, "    global by rays: {}", rgb(direct));
     let mut sums: BTreeMap<(u32, Bounces), (u32, Rgb)> = BTreeMap::new();
@@ -146,5 +154,7 @@ fn rgb(v: Rgb) -> String {
 }
 
 fn vector(v: Vec3) -> String {
+    // Without a sign of zero.
+    let v = v + Vec3::ZERO;
     format!("({}, {}, {})", v.x, v.y, v.z)
 }

@@ -305,7 +305,8 @@ fn power(watts: f64) -> String {
     }
 }
 
-fn plural(n: u64, noun: &str) -> String {
+/// A number of things.
+pub fn plural(n: u64, noun: &str) -> String {
     match (n, noun) {
         (1, _) => format!("1 {noun}"),
         (_, "pass") => format!("{n} passes"),

@@ -6,10 +6,11 @@ use super::photons::MapPhoton;
 use crate::color::Rgb;
 use crate::film::Crop;
 use crate::integrator::MapName;
+use crate::material::Material;
 use crate::math::real::ln;
 use crate::math::{Ray, Vec2, Vec3};
 use crate::texture::Image;
-use crate::world::{World, leave};
+use crate::world::{Hit, World, leave};
 
 /// A photon counts as seen if nothing lies before it up to this share of the way: its own surface is
 /// there.
@@ -67,9 +68,9 @@ struct Dot {
 }
 
 /// Draws photons, near ones over far ones, in the window that a render would fill: display values in
-/// [0, 1], and what the colours mean. Without [`PhotonPicture::through_walls`] only photons are drawn that the
-/// camera sees directly, on the side it sees of their surface, before surfaces in dark grey; mirrors and
-/// glass hide what is behind them.
+/// [0, 1], and what the colours mean. Without [`PhotonPicture::through_walls`] only photons are drawn that
+/// nothing opaque hides and that lie on the side the camera sees of their surface, before surfaces in dark
+/// grey. All lie on straight lines from the camera: mirrors show none, and glass bends nothing.
 pub fn photon_picture(
     world: &World,
     photons: &[MapPhoton],
@@ -109,15 +110,32 @@ fn dot(
         return None;
     }
     let towards = place - from;
-    let hidden = || {
-        let ray = Ray { origin: from, direction: towards, t_max: SEEN_UP_TO };
-        photon.photon.normal.dot(towards) >= 0.0 || world.occluded(&ray)
-    };
-    if !options.through_walls && hidden() {
+    let turned_away = photon.photon.normal.dot(towards) >= 0.0;
+    if !options.through_walls && (turned_away || is_hidden(world, from, place)) {
         return None;
     }
     let (class, color) = scale.class_and_color(photon);
     Some(Dot { distance_sq: towards.length_squared(), position, class, color })
+}
+
+/// Whether anything opaque lies between the camera and a photon, in a straight line.
+fn is_hidden(world: &World, camera: Vec3, photon: Vec3) -> bool {
+    let mut origin = camera;
+    loop {
+        let ray = Ray { origin, direction: photon - origin, t_max: SEEN_UP_TO };
+        let Some(hit) = world.intersect(&ray) else { return false };
+        if !is_clear(world, &hit) {
+            return true;
+        }
+        origin = leave(&hit.point, ray.direction).origin;
+    }
+}
+
+/// Whether photons show through a surface.
+fn is_clear(world: &World, hit: &Hit) -> bool {
+    let scene = world.scene();
+    let material = &scene.materials[scene.shapes[hit.shape as usize].material];
+    matches!(material, Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null)
 }
 
 /// Fills the pixels whose centres a dot covers, and at least the one that it lies in.
