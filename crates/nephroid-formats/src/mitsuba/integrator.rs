@@ -166,7 +166,7 @@ impl<'t> Reader<'t> {
             let plugin = self.plugin(element);
             let nested = plugin.objects("integrator");
             for property in &plugin.properties {
-                if let (Value::Text(list), "aov", "aovs") = (&property.value, plugin.kind, &*property.name) {
+                if let (Value::Text(list), "aov", "aovs") = (&property.value, plugin.kind, property.name) {
                     self.aovs(list, &property.location, &mut request.aovs);
                 }
                 let value = match property.value {

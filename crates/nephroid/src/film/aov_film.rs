@@ -132,7 +132,8 @@ mod tests {
     use super::*;
 
     fn sample(depth: f32, light: f32) -> AovSample {
-        let mut sample = AovSample { hit: depth > 0.0, ..AovSample::default() };
+        let mut sample = AovSample::default();
+        sample.hit = depth > 0.0;
         sample.add(Aov::Depth, &[depth]);
         sample.add(Aov::Direct, &[light, 2.0 * light, 0.0]);
         sample.add(Aov::Albedo, &[light; 3]);
