@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use nephroid::film::{ImageError, ToneMap};
+use nephroid::film::{Aov, ImageError, ToneMap};
 
+use crate::lab_args::{InspectArgs, PhotonsArgs};
+use crate::layers;
 use crate::method::Integrator;
 use crate::parameters::PhotonFlags;
 
@@ -31,6 +33,10 @@ pub enum Command {
     Compare(CompareArgs),
     /// Tell what a scene contains
     Info(InfoArgs),
+    /// Draw the photons of a scene, or write each of them to a table or a cloud of points
+    Photons(Box<PhotonsArgs>),
+    /// Tell what the estimate of a pixel saw: surfaces, photon maps, and what they brought
+    Inspect(Box<InspectArgs>),
 }
 
 /// Reads the command line; on a mistake in it, or when asked for help, the process ends here.
@@ -81,6 +87,10 @@ pub struct RenderArgs {
     /// Print one JSON object about the render to the standard output
     #[arg(long)]
     pub json: bool,
+    /// Further layers of .exr files: direct, global, caustic, emitted, albedo, normal, depth, position,
+    /// geo_normal, uv, radius, count
+    #[arg(long = "aov", value_name = "NAME,…", value_delimiter = ',', value_parser = layers::parse)]
+    pub aovs: Vec<Aov>,
     #[command(flatten)]
     pub limits: LimitArgs,
     #[command(flatten)]
@@ -181,7 +191,8 @@ fn define(text: &str) -> Result<(String, String), String> {
     }
 }
 
-fn resolution(text: &str) -> Result<(u32, u32), String> {
+/// A size in pixels.
+pub fn resolution(text: &str) -> Result<(u32, u32), String> {
     let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     let (width, height) = size.ok_or("write WIDTHxHEIGHT in pixels, as in 640x480")?;
     let sides = 1..=65_536u32;

@@ -34,7 +34,7 @@ pub fn diagnostic(diagnostic: &Diagnostic) {
 }
 
 /// Whether the standard error shows colours; see <https://no-color.org>.
-fn has_colour() -> bool {
+pub fn has_colour() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 

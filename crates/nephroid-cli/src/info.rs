@@ -118,7 +118,8 @@ fn shapes(scene: &Scene) -> Value {
     about
 }
 
-fn material(material: &Material) -> &'static str {
+/// What a kind of material is called.
+pub fn material(material: &Material) -> &'static str {
     match material {
         Material::Diffuse { .. } => "diffuse",
         Material::Phong { .. } => "phong",
@@ -166,12 +167,13 @@ fn request(request: &IntegratorRequest) -> Value {
     Value::Object(about)
 }
 
-fn vector(v: Vec3) -> Value {
+/// Three numbers.
+pub fn vector(v: Vec3) -> Value {
     json!([v.x, v.y, v.z].map(short))
 }
 
 /// The number of fewest digits that is the same in single precision.
-fn short(v: f32) -> Value {
+pub fn short(v: f32) -> Value {
     v.to_string().parse::<f64>().map_or(Value::Null, |v| json!(v))
 }
 

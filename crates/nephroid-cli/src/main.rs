@@ -7,10 +7,16 @@ mod console;
 mod exit;
 mod fault;
 mod info;
+mod inspect;
+mod inspect_json;
+mod inspect_text;
+mod lab_args;
+mod layers;
 mod load;
 mod method;
 mod output;
 mod parameters;
+mod photons;
 mod plan;
 mod progress;
 mod render;
@@ -39,5 +45,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Tonemap(args) => tonemap::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Info(args) => info::run(args),
+        Command::Photons(args) => photons::run(args),
+        Command::Inspect(args) => inspect::run(args),
     }
 }

@@ -10,6 +10,7 @@ use nephroid_formats::image::{
 };
 
 use crate::exit::Failure;
+use crate::layers::{DevelopedLayer, with_layers};
 
 /// What a picture can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,9 +56,18 @@ impl Output {
         }
     }
 
-    fn write(&self, image: &Image, tone_map: &ToneMap, exposure: f32) -> Result<(), ImageError> {
+    fn write(
+        &self,
+        image: &Image,
+        layers: &[DevelopedLayer],
+        tone_map: &ToneMap,
+        exposure: f32,
+    ) -> Result<(), ImageError> {
         match self.kind {
-            Kind::Exr => write_exr(&self.path, &[Layer { name: "", data: LayerData::Rgb(image) }]),
+            Kind::Exr => {
+                let picture = Layer { name: "", data: LayerData::Rgb(image) };
+                with_layers(picture, layers, |all| write_exr(&self.path, all))
+            }
             Kind::Png => write_png(&self.path, &tone_map.apply(image, exposure)),
         }
     }
@@ -86,14 +96,15 @@ pub fn outputs(named: &[PathBuf], name: &OsStr) -> Result<Vec<Output>, Failure> 
     Ok(outputs)
 }
 
-/// Writes a picture to each file. One that cannot be written keeps no other from being.
+/// Writes a picture to each file, with its further layers where they fit. One that cannot be written keeps no other from being.
 pub fn write_all(
     outputs: &[Output],
     image: &Image,
+    layers: &[DevelopedLayer],
     tone_map: &ToneMap,
     exposure: f32,
 ) -> Result<(), Failure> {
-    let write = |o: &Output| o.write(image, tone_map, exposure).err().map(|e| e.to_string());
+    let write = |o: &Output| o.write(image, layers, tone_map, exposure).err().map(|e| e.to_string());
     let errors: Vec<String> = outputs.iter().filter_map(write).collect();
     if errors.is_empty() { Ok(()) } else { Err(Failure::File(errors.join("\nerror: "))) }
 }

@@ -15,6 +15,7 @@ use crate::args::RenderArgs;
 use crate::builtin;
 use crate::console::{self, Messages};
 use crate::exit::{Exit, Failure};
+use crate::layers::{self, DevelopedLayer, LayerPlan};
 use crate::load;
 use crate::method;
 use crate::output::{self, Output};
@@ -40,6 +41,8 @@ pub struct Rendered {
     pub preparing: Duration,
     /// How long it took to render, from the pilot to the last sample.
     pub rendering: Duration,
+    /// Further layers of the picture.
+    pub layers: Vec<DevelopedLayer>,
     /// Threads that worked on it.
     pub threads: usize,
 }
@@ -70,14 +73,13 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
     }
     let method = method::choose(args.integrator, &file.integrator, &args.photons, &mut messages)?;
     resize(&mut file, args.resolution, &mut messages)?;
+    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, &outputs, &mut messages)?;
     let plan = Plan::new(&args.limits, file.sample_count);
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
     let reading = clock.elapsed();
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
 
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from));
-    let pool = pool.build().map_err(|e| Failure::Usage(format!("cannot start threads: {e}")))?;
-    let rendered = pool.install(|| render(file, &settings, &plan, visible))?;
+    let rendered = pool(args.threads)?.install(|| render(file, &settings, &plan, &layers, visible))?;
 
     let writing = Instant::now();
     let outputs = write(&rendered, &outputs, args)?;
@@ -99,8 +101,14 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
     Ok(if rendered.ended == Ended::Interrupted { Exit::Stopped } else { Exit::Done })
 }
 
+/// So many threads, or one for each core.
+pub fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
+    pool.build().map_err(|e| Failure::Usage(format!("cannot start threads: {e}")))
+}
+
 /// Gives the picture another size, and refuses one that memory cannot hold.
-fn resize(
+pub fn resize(
     file: &mut SceneFile,
     resolution: Option<(u32, u32)>,
     messages: &mut Messages,
@@ -126,6 +134,7 @@ fn render(
     file: SceneFile,
     settings: &RenderSettings,
     plan: &Plan,
+    layers: &[LayerPlan],
     visible: bool,
 ) -> Result<Rendered, Failure> {
     let clock = Instant::now();
@@ -135,11 +144,13 @@ fn render(
     let pixels = u64::from(window.width) * u64::from(window.height);
     let total = plan.total_samples().map(|n| n.saturating_mul(pixels));
     let watch = Watch::new(visible, plan.seconds, total, progress::listen()?);
-    let mut session = Session::new(&world, settings.clone(), &watch);
+    let aovs: Vec<_> = layers.iter().map(|layer| layer.aov).collect();
+    let mut session = Session::new(&world, settings.clone(), &watch).with_aovs(&aovs);
     let ended = step_to_the_end(&mut session, plan, &watch);
     Ok(Rendered {
         film: session.film().clone(),
         statistics: session.statistics().clone(),
+        layers: layers::develop(layers, session.aovs()),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
         has_light: has_light(&world),
         ended,
@@ -178,6 +189,6 @@ fn write(rendered: &Rendered, outputs: &[Output], args: &RenderArgs) -> Result<V
         return Ok(Vec::new());
     }
     let image = rendered.film.develop();
-    output::write_all(outputs, &image, &args.display.tonemap, args.display.exposure)?;
+    output::write_all(outputs, &image, &rendered.layers, &args.display.tonemap, args.display.exposure)?;
     Ok(outputs.to_vec())
 }

@@ -9,6 +9,7 @@ use nephroid::transport::{Balance, MapPlan};
 use serde_json::{Value, json};
 
 use crate::console::Messages;
+use crate::layers::DevelopedLayer;
 use crate::method;
 use crate::output::Output;
 use crate::plan::Plan;
@@ -263,6 +264,7 @@ impl Report<'_> {
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
             "outputs": outputs,
+            "layers": r.layers.iter().map(DevelopedLayer::name).collect::<Vec<_>>(),
             "messages": warnings,
         })
     }
@@ -282,7 +284,7 @@ fn balance_json((light, balance): (&str, &Balance)) -> Value {
 }
 
 /// Digits in groups of three.
-fn grouped(n: u64) -> String {
+pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, digit) in digits.chars().enumerate() {
@@ -303,7 +305,8 @@ fn power(watts: f64) -> String {
     }
 }
 
-fn plural(n: u64, noun: &str) -> String {
+/// A number of things.
+pub fn plural(n: u64, noun: &str) -> String {
     match (n, noun) {
         (1, _) => format!("1 {noun}"),
         (_, "pass") => format!("{n} passes"),

@@ -4,4 +4,5 @@ pub mod diagnostic;
 pub mod image;
 pub mod mesh;
 pub mod mitsuba;
+pub mod photons;
 pub mod vfs;

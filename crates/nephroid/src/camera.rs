@@ -112,6 +112,21 @@ impl CameraRays {
         Ray::new(self.to_world.point(origin), self.to_world.vector(direction).normalize())
     }
 
+    /// Where a point of the world appears: its position on the whole picture in pixels, which may lie
+    /// outside, and the origin of the ray through it. `None` behind the camera.
+    pub fn project(&self, point: Vec3) -> Option<(Vec2, Vec3)> {
+        let local = self.to_world.inverse().point(point);
+        let (q, origin) = match self.projection {
+            // Through the middle of a lens.
+            Projection::Perspective { .. } | Projection::ThinLens { .. } => {
+                (Vec2::new(local.x, local.y) / local.z, Vec3::ZERO)
+            }
+            Projection::Orthographic => (Vec2::new(local.x, local.y), Vec3::new(local.x, local.y, 0.0)),
+        };
+        let p = (Vec2::ONE - q / self.half) * 0.5;
+        (local.z > 0.0).then(|| ((p - self.offset) * self.size, self.to_world.point(origin)))
+    }
+
     /// Where the camera stands.
     pub fn position(&self) -> Vec3 {
         self.to_world.point(Vec3::ZERO)
@@ -162,6 +177,21 @@ mod tests {
         let shifted = rays(perspective(FovAxis::X, Vec2::new(0.1, 0.0)), 400, 200);
         let direction = shifted.ray(centre - Vec2::new(40.0, 0.0), LENS).direction;
         assert!((direction + Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn points_on_a_ray_are_projected_to_where_it_started() {
+        let shifted = perspective(FovAxis::Y, Vec2::new(0.1, -0.2));
+        for projection in [shifted, Projection::Orthographic] {
+            let camera = rays(projection, 400, 200);
+            for position in [Vec2::new(0.5, 0.5), Vec2::new(321.0, 77.0), Vec2::new(-20.0, 230.0)] {
+                let ray = camera.ray(position, LENS);
+                let (found, origin) = camera.project(ray.origin + ray.direction * 2.5).unwrap();
+                assert!((found - position).length() < 1e-3, "{projection:?}: {found}, not {position}");
+                assert!((origin - ray.origin).length() < 1e-5, "{projection:?}: {origin}");
+                assert!(camera.project(ray.origin - ray.direction).is_none());
+            }
+        }
     }
 
     #[test]

@@ -36,6 +36,7 @@
 //! | how to render, and how well | [`session`], [`integrator::Method`], [`integrator::PhotonMapperConfig`] |
 //! | watching and stopping a render | [`observer::Observer`] |
 //! | pictures, filters, tone mapping | [`film`] |
+//! | the photons of a render, and what a pixel saw | [`laboratory`] |
 //! | photons by themselves | [`photon_map`], [`transport::photon_pass`] |
 //! | vectors and transforms | [`math`], which re-exports glam's |
 //!
@@ -58,6 +59,7 @@ pub mod color;
 pub mod film;
 pub mod handle;
 pub mod integrator;
+pub mod laboratory;
 pub mod light;
 pub mod material;
 pub mod math;

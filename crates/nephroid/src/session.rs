@@ -1,15 +1,16 @@
 //! A render in progress: an iteration at a time, in short steps that can be stopped between.
 
-use crate::film::Film;
+use crate::film::{Aov, AovFilm, AovSum, Film, PixelSum};
 use crate::integrator::{
-    Maps, Method, PhotonMapper, PhotonMapperConfig, PictureSums, Scratch, path_radiance,
+    AovProbe, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PictureSums,
 };
 use crate::observer::{Observer, Phase, Work};
+use crate::photon_map::NearestHeap;
 use crate::transport::{CameraPass, Exposure, Ledger, PhotonPlan, camera_pass};
 use crate::world::World;
 
 /// Camera samples a pixel gets in one step: a multiple of the strides at which photon maps are read.
-const STEP_SAMPLES: u32 = 4;
+pub(crate) const STEP_SAMPLES: u32 = 4;
 
 /// How to render.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +59,7 @@ pub struct Session<'w> {
     world: &'w World,
     settings: RenderSettings,
     film: Film,
+    aovs: Option<AovFilm>,
     plan: PhotonPlan,
     maps: Option<Maps>,
     ledger: Ledger,
@@ -82,6 +84,7 @@ impl<'w> Session<'w> {
             world,
             settings,
             film: Film::new(window.width, window.height),
+            aovs: None,
             plan,
             maps: None,
             ledger: Ledger::default(),
@@ -89,6 +92,14 @@ impl<'w> Session<'w> {
             samples: 0,
             statistics: Statistics { plan, ..Statistics::default() },
         }
+    }
+
+    /// Keeps further values of each pixel; none for an empty list. The picture stays the same to the bit.
+    #[must_use]
+    pub fn with_aovs(mut self, aovs: &[Aov]) -> Self {
+        let (width, height) = (self.film.width(), self.film.height());
+        self.aovs = (!aovs.is_empty()).then(|| AovFilm::new(width, height, aovs));
+        self
     }
 
     /// Renders on: the photons of an iteration if one begins, and a few samples of every pixel.
@@ -108,20 +119,9 @@ impl<'w> Session<'w> {
         let done = match self.settings.method.clone() {
             Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
             Method::Path(config) => {
-                let world = self.world;
-                let result = camera_pass(
-                    world,
-                    &pass,
-                    observer,
-                    || (),
-                    PictureSums::append,
-                    |sample, (), sums| {
-                        let light = path_radiance(world, &config, sample);
-                        sums.add(&light);
-                        light.emitted + light.direct + light.global + light.caustic
-                    },
-                );
-                self.take(result)
+                let tracer = PathTracer { world: self.world, config: &config };
+                let exposure = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                self.take(exposure)
             }
         };
         if done {
@@ -140,6 +140,11 @@ impl<'w> Session<'w> {
     /// The film so far.
     pub fn film(&self) -> &Film {
         &self.film
+    }
+
+    /// Further values of the picture so far, if [asked for](Self::with_aovs).
+    pub fn aovs(&self) -> Option<&AovFilm> {
+        self.aovs.as_ref()
     }
 
     /// What was done so far.
@@ -169,26 +174,28 @@ impl<'w> Session<'w> {
         }
         let Some(maps) = &self.maps else { return false };
         let mapper = PhotonMapper::new(world, config, maps, self.settings.samples_per_pixel);
-        let result = camera_pass(
-            world,
-            pass,
-            observer,
-            Scratch::default,
-            PictureSums::append,
-            |mut sample, scratch, sums| {
-                let light = mapper.radiance(&mut sample, scratch);
-                sums.add(&light);
-                light.emitted + light.direct + light.global + light.caustic
-            },
-        );
-        self.take(result)
+        let exposure = expose(world, &mapper, pass, self.aovs.is_some(), observer);
+        self.take(exposure)
     }
 
     /// Adds a pass to the film, whole or as far as it got.
-    fn take(&mut self, exposure: Exposure<PictureSums>) -> bool {
-        self.film.add_iteration(&exposure.sums);
-        self.statistics.picture.append(&exposure.total);
-        exposure.complete
+    fn take(&mut self, exposed: Exposed) -> bool {
+        let (total, complete) = match exposed {
+            Exposed::Picture(exposure) => {
+                self.film.add_iteration(&exposure.sums);
+                (exposure.total, exposure.complete)
+            }
+            Exposed::WithAovs(exposure) => {
+                let picture: Vec<PixelSum> = exposure.sums.iter().map(|(sum, _)| *sum).collect();
+                self.film.add_iteration(&picture);
+                if let Some(film) = &mut self.aovs {
+                    film.add_iteration(exposure.sums.iter().map(|(_, aovs)| aovs));
+                }
+                (exposure.total, exposure.complete)
+            }
+        };
+        self.statistics.picture.append(&total);
+        complete
     }
 
     /// Takes new maps into the statistics.
@@ -206,4 +213,48 @@ impl<'w> Session<'w> {
         self.ledger.append(&maps.ledger);
         self.statistics.ledger = self.ledger.per_path();
     }
+}
+
+/// What a camera pass brings, with further values or without.
+enum Exposed {
+    Picture(Exposure<PixelSum, PictureSums>),
+    WithAovs(Exposure<(PixelSum, AovSum), PictureSums>),
+}
+
+fn expose(
+    world: &World,
+    estimator: &impl Estimator,
+    pass: &CameraPass,
+    with_aovs: bool,
+    observer: &dyn Observer,
+) -> Exposed {
+    let join = PictureSums::append;
+    if with_aovs {
+        return Exposed::WithAovs(camera_pass(
+            world,
+            pass,
+            observer,
+            NearestHeap::new,
+            join,
+            |mut sample, weight, heap, (picture, aovs): &mut (PixelSum, AovSum), total| {
+                let mut probe = AovProbe::new(&sample);
+                let light = estimator.radiance(&mut sample, heap, &mut probe);
+                total.add(&light);
+                picture.add(light.total(), weight);
+                aovs.add(&probe.finish(&light), weight);
+            },
+        ));
+    }
+    Exposed::Picture(camera_pass(
+        world,
+        pass,
+        observer,
+        NearestHeap::new,
+        join,
+        |mut sample, weight, heap, picture: &mut PixelSum, total| {
+            let light = estimator.radiance(&mut sample, heap, &mut ());
+            total.add(&light);
+            picture.add(light.total(), weight);
+        },
+    ))
 }

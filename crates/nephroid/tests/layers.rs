@@ -26,6 +26,7 @@ const LAYERS: &[&str] = &[
     "transport",
     "integrator",
     "session",
+    "laboratory",
 ];
 
 #[test]

@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod integrators;
+mod laboratory;
+mod layers;
 mod limits;
 mod outputs;
 mod pictures;

@@ -32,21 +32,33 @@ pub enum LayerData<'a> {
         /// `width · height` values, row by row.
         values: &'a [f32],
     },
+    /// Channels with names of their own.
+    Channels {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// For each channel its name after the layer's and `width · height` values, row by row.
+        channels: &'a [(&'a str, &'a [f32])],
+    },
 }
 
 impl Layer<'_> {
     fn size(&self) -> (u32, u32) {
         match self.data {
             LayerData::Rgb(image) => (image.width, image.height),
-            LayerData::Grey { width, height, .. } => (width, height),
+            LayerData::Grey { width, height, .. } | LayerData::Channels { width, height, .. } => {
+                (width, height)
+            }
         }
     }
 
-    /// How many values each channel has.
-    fn len(&self) -> usize {
+    /// Whether every channel has so many values.
+    fn has_length(&self, len: usize) -> bool {
         match self.data {
-            LayerData::Rgb(image) => image.pixels.len(),
-            LayerData::Grey { values, .. } => values.len(),
+            LayerData::Rgb(image) => image.pixels.len() == len,
+            LayerData::Grey { values, .. } => values.len() == len,
+            LayerData::Channels { channels, .. } => channels.iter().all(|(_, values)| values.len() == len),
         }
     }
 
@@ -57,6 +69,9 @@ impl Layer<'_> {
         };
         match self.data {
             LayerData::Grey { values, .. } => vec![channel("Y", values.to_vec())],
+            LayerData::Channels { channels, .. } => {
+                channels.iter().map(|(name, values)| channel(name, values.to_vec())).collect()
+            }
             LayerData::Rgb(image) => (0..3)
                 .zip(["R", "G", "B"])
                 .map(|(i, letter)| channel(letter, image.pixels.iter().map(|p| p[i]).collect()))
@@ -97,7 +112,7 @@ fn check(layers: &[Layer]) -> Result<(u32, u32), ImageProblem> {
     }
     for (i, layer) in layers.iter().enumerate() {
         let name = layer.name;
-        if layer.size() != size || layer.len() != size.0 as usize * size.1 as usize {
+        if layer.size() != size || !layer.has_length(size.0 as usize * size.1 as usize) {
             return bad(format!("the layer {name:?} has another size than {}×{}", size.0, size.1));
         }
         if name.len() > 200 || !name.bytes().all(|b| b.is_ascii_graphic()) {
@@ -145,7 +160,9 @@ mod tests {
         let image = picture(2, 2);
         let albedo = Image::filled(2, 2, Rgb::new(0.1, 0.2, 0.3));
         let variance = LayerData::Grey { width: 2, height: 2, values: &[1.0, 2.0, 3.0, 4.0] };
+        let depth = LayerData::Channels { width: 2, height: 2, channels: &[("Z", &[5.0, 6.0, 7.0, 8.0])] };
         let layers = [
+            Layer { name: "depth", data: depth },
             Layer { name: "albedo", data: LayerData::Rgb(&albedo) },
             main_layer(&image),
             Layer { name: "variance", data: variance },
@@ -157,8 +174,9 @@ mod tests {
         write_exr(file.path(), &layers).unwrap();
         let channels = all(file.path()).unwrap().layer_data.channel_data.list;
         let names: Vec<_> = channels.iter().map(|c| c.name.to_string()).collect();
-        assert_eq!(names, ["B", "G", "R", "albedo.B", "albedo.G", "albedo.R", "variance.Y"]);
-        assert_eq!(channels[6].sample_data, FlatSamples::F32(vec![1.0, 2.0, 3.0, 4.0]));
+        assert_eq!(names, ["B", "G", "R", "albedo.B", "albedo.G", "albedo.R", "depth.Z", "variance.Y"]);
+        assert_eq!(channels[6].sample_data, FlatSamples::F32(vec![5.0, 6.0, 7.0, 8.0]));
+        assert_eq!(channels[7].sample_data, FlatSamples::F32(vec![1.0, 2.0, 3.0, 4.0]));
     }
 
     #[test]
@@ -173,6 +191,10 @@ mod tests {
             vec![named("with space")],
             vec![named("ü")],
             vec![Layer { name: "", data: short }],
+            vec![Layer {
+                name: "a",
+                data: LayerData::Channels { width: 2, height: 2, channels: &[("Z", &[1.0])] },
+            }],
         ] {
             assert!(matches!(encode_exr(&layers), Err(ImageProblem::BadLayers(_))), "{layers:?}");
         }

@@ -2,12 +2,18 @@
 
 use std::cell::{Cell, RefCell};
 
+use nephroid::film::Aov;
+
 use super::document::Element;
 use super::names::property_is_known;
 use super::parameters::shortened;
 use super::reader::Reader;
 use super::value::{Property, Value};
 use crate::diagnostic::{Diagnostic, Location};
+
+/// Values that `aov` knows in Mitsuba and that are not kept here.
+const OTHER_AOVS: [&str; 7] =
+    ["dp_du", "dp_dv", "duv_dx", "duv_dy", "prim_index", "shape_index", "boundary_test"];
 
 /// Integrators that only wrap another one, to compute more about the same picture.
 const WRAPPERS: [&str; 2] = ["moment", "aov"];
@@ -37,6 +43,24 @@ pub struct IntegratorParameter {
     used: Cell<bool>,
 }
 
+/// A layer that `<integrator type="aov">` asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AovLayer {
+    /// What the layer is called.
+    pub name: String,
+    /// What is in it.
+    pub aov: Aov,
+    /// Where it is asked for.
+    pub location: Location,
+}
+
+impl AovLayer {
+    /// The channels of the layer, as Mitsuba names them.
+    pub fn channels(&self) -> &'static [&'static str] {
+        if self.aov == Aov::Depth { &["T"] } else { self.aov.channels() }
+    }
+}
+
 /// The integrator that a scene asks for. Whoever sets up an integrator takes its parameters with
 /// the `get` functions, and then reports [`Self::unused`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,6 +71,8 @@ pub struct IntegratorRequest {
     pub location: Option<Location>,
     /// What is said of it.
     pub parameters: Vec<IntegratorParameter>,
+    /// Layers that are asked for beside the picture.
+    pub aovs: Vec<AovLayer>,
     asked: RefCell<Vec<String>>,
 }
 
@@ -140,6 +166,9 @@ impl<'t> Reader<'t> {
             let plugin = self.plugin(element);
             let nested = plugin.objects("integrator");
             for property in &plugin.properties {
+                if let (Value::Text(list), "aov", "aovs") = (&property.value, plugin.kind, property.name) {
+                    self.aovs(list, &property.location, &mut request.aovs);
+                }
                 let value = match property.value {
                     Value::Integer(v) => ParameterValue::Int(v),
                     Value::Float(v) => ParameterValue::Float(v),
@@ -186,4 +215,38 @@ impl<'t> Reader<'t> {
             _ => self.log.error(&property.location, "\"hide_emitters\" must be a boolean"),
         }
     }
+
+    /// Reads `name:type` pairs.
+    fn aovs(&self, list: &str, at: &Location, layers: &mut Vec<AovLayer>) {
+        for pair in list.split([',', ' ']).map(str::trim).filter(|pair| !pair.is_empty()) {
+            let Some((name, kind)) = pair.split_once(':').filter(|(name, _)| is_layer_name(name)) else {
+                let message = format!("\"{}\" is no layer", shortened(pair));
+                self.log.push(Diagnostic::error(at, message).hint("write NAME:TYPE, as in nn:sh_normal"));
+                continue;
+            };
+            let aov = if kind == "sh_normal" { Some(Aov::Normal) } else { Aov::parse(kind) };
+            match aov {
+                Some(_) if layers.iter().any(|layer| layer.name == name) => {
+                    self.log.error(at, format!("two layers have the name \"{}\"", shortened(name)));
+                }
+                Some(aov) => {
+                    let (name, location) = (name.to_string(), at.clone());
+                    layers.push(AovLayer { name, aov, location });
+                }
+                None if OTHER_AOVS.contains(&kind) => {
+                    self.log.warn(at, format!("\"{kind}\" is not kept here: the layer is left out"));
+                }
+                None => {
+                    let known = Aov::ALL.iter().map(|aov| aov.name()).chain(["sh_normal"]);
+                    let message = format!("there is no value \"{}\" to keep", shortened(kind));
+                    self.log.push(Diagnostic::error(at, message).did_you_mean(kind, known));
+                }
+            }
+        }
+    }
+}
+
+/// Whether a layer of a file can have that name.
+fn is_layer_name(name: &str) -> bool {
+    (1..=100).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_graphic())
 }

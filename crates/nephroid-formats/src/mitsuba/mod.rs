@@ -26,7 +26,7 @@ mod texture;
 mod transform;
 mod value;
 
-pub use integrator::{IntegratorParameter, IntegratorRequest, ParameterValue};
+pub use integrator::{AovLayer, IntegratorParameter, IntegratorRequest, ParameterValue};
 
 use std::path::Path;
 

@@ -1,5 +1,7 @@
 //! The film: exact sums of radiance, reconstruction filters and tone mapping.
 
+mod aov;
+mod aov_film;
 mod error;
 mod filter;
 mod filter_sampler;
@@ -8,6 +10,8 @@ mod sums;
 mod tonemap;
 mod tonemap_name;
 
+pub use aov::{Aov, AovSample};
+pub use aov_film::{AovFilm, AovImage, AovSum};
 pub use error::{ImageError, SizeMismatch, difference_picture};
 pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};

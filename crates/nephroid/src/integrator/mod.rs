@@ -2,11 +2,14 @@
 
 mod path;
 mod photon_mapper;
+mod probe;
 
 pub use path::PathConfig;
-pub(crate) use path::radiance as path_radiance;
+pub(crate) use path::PathTracer;
 pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show};
-pub(crate) use photon_mapper::{Maps, PhotonMapper, Scratch};
+pub(crate) use photon_mapper::{Maps, PhotonMapper};
+pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Probe};
+pub use probe::{LightPart, MapName};
 
 use crate::color::Rgb;
 
@@ -37,7 +40,7 @@ impl Default for Method {
 
 /// Radiance by the kind of path that brought it, in W/(m²·sr).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Components {
+pub struct Components {
     /// Lamps and sky seen directly or through specular surfaces.
     pub emitted: Rgb,
     /// Light that met one surface that is not specular, and came straight to it.
@@ -46,6 +49,33 @@ pub(crate) struct Components {
     pub global: Rgb,
     /// Light that came to such a surface by specular ones.
     pub caustic: Rgb,
+}
+
+impl Components {
+    /// All of it.
+    pub fn total(&self) -> Rgb {
+        self.emitted + self.direct + self.global + self.caustic
+    }
+
+    /// Adds to one part of it.
+    pub(crate) fn add(&mut self, part: LightPart, light: Rgb) {
+        *match part {
+            LightPart::Emitted => &mut self.emitted,
+            LightPart::Direct => &mut self.direct,
+            LightPart::Global => &mut self.global,
+            LightPart::Caustic => &mut self.caustic,
+        } += light;
+    }
+
+    /// One part of it.
+    pub fn part(&self, part: LightPart) -> Rgb {
+        match part {
+            LightPart::Emitted => self.emitted,
+            LightPart::Direct => self.direct,
+            LightPart::Global => self.global,
+            LightPart::Caustic => self.caustic,
+        }
+    }
 }
 
 /// Sums over a picture of radiance by the kind of path that brought it.

@@ -2,10 +2,11 @@
 //! 1997): unbiased, and so the measure of every other estimator on surfaces. Light that reaches a
 //! surface from a Dirac light by way of a specular one is beyond it.
 
-use super::Components;
+use super::{Components, Estimator, LightPart, Met, Probe};
 use crate::color::Rgb;
 use crate::material::Transport;
 use crate::math::Vec3;
+use crate::photon_map::NearestHeap;
 use crate::sampling::power_heuristic;
 use crate::transport::{DirectLights, Partner, PixelSample, light_pdf, sample_lights, sky_by_bsdf, survival};
 use crate::world::{World, leave};
@@ -28,8 +29,31 @@ enum Last {
     Sampled { from: Vec3, pdf_solid_angle: f32 },
 }
 
+/// The path tracer of a world.
+pub(crate) struct PathTracer<'a> {
+    pub world: &'a World,
+    pub config: &'a PathConfig,
+}
+
+impl Estimator for PathTracer<'_> {
+    fn radiance<P: Probe>(
+        &self,
+        sample: &mut PixelSample,
+        _heap: &mut NearestHeap,
+        probe: &mut P,
+    ) -> Components {
+        radiance(self.world, self.config, sample, probe)
+    }
+}
+
 /// Estimates the radiance of one camera sample.
-pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSample) -> Components {
+fn radiance<P: Probe>(
+    world: &World,
+    config: &PathConfig,
+    sample: &mut PixelSample,
+    probe: &mut P,
+) -> Components {
+    probe.begin(None, Rgb::WHITE);
     let mut out = Components::default();
     let mut ray = sample.ray;
     let mut throughput = Rgb::WHITE;
@@ -45,7 +69,7 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
                     sky_by_bsdf(world, ray.direction, pdf_solid_angle, config.direct_lights)
                 }
             };
-            book(&mut out, throughput * sky, diffuse, last);
+            book(&mut out, throughput * sky, diffuse, last, probe);
             break;
         };
         let wo = -ray.direction;
@@ -57,24 +81,23 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
                     power_heuristic(pdf_solid_angle, pdf)
                 }
             };
-            book(&mut out, throughput * emitted * weight, diffuse, last);
+            book(&mut out, throughput * emitted * weight, diffuse, last, probe);
         }
         let bsdf = world.bsdf(&hit, wo);
         if bsdf.is_null() {
             ray = leave(&hit.point, ray.direction);
             continue;
         }
+        probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: diffuse == 0 });
         if !bsdf.is_dirac() {
             diffuse += 1;
             if fits(depth + 1) {
                 let (lights, sampler) = (config.direct_lights, &mut sample.sampler);
                 let direct =
                     sample_lights(world, &hit.point, &bsdf, wo, lights, Partner::BsdfSample, sampler);
-                if diffuse == 1 {
-                    out.direct += throughput * direct;
-                } else {
-                    out.global += throughput * direct;
-                }
+                let part = if diffuse == 1 { LightPart::Direct } else { LightPart::Global };
+                out.add(part, throughput * direct);
+                probe.light(part, throughput * direct);
             }
         }
         let s = &mut sample.sampler;
@@ -99,11 +122,13 @@ pub(crate) fn radiance(world: &World, config: &PathConfig, mut sample: PixelSamp
 
 /// Books light by how many surfaces that are not specular it met, and whether a specular one after the
 /// only one of them makes it a caustic.
-fn book(out: &mut Components, light: Rgb, diffuse: u32, last: Last) {
-    match (diffuse, last) {
-        (0, _) => out.emitted += light,
-        (1, Last::Certain) => out.caustic += light,
-        (1, Last::Sampled { .. }) => out.direct += light,
-        _ => out.global += light,
-    }
+fn book(out: &mut Components, light: Rgb, diffuse: u32, last: Last, probe: &mut impl Probe) {
+    let part = match (diffuse, last) {
+        (0, _) => LightPart::Emitted,
+        (1, Last::Certain) => LightPart::Caustic,
+        (1, Last::Sampled { .. }) => LightPart::Direct,
+        _ => LightPart::Global,
+    };
+    out.add(part, light);
+    probe.light(part, light);
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::film::{FilterSampler, PixelSum};
+use crate::film::FilterSampler;
 use crate::math::{Ray, Vec2};
 use crate::observer::{Observer, Phase, Work};
 use crate::sampling::{Key, Sampler, Sequence, Stream};
@@ -33,33 +33,56 @@ pub(crate) struct PixelSample {
     pub sampler: Sampler,
 }
 
+impl PixelSample {
+    /// A sample of the pixel that `key` names, and its weight by the filter.
+    pub fn new(
+        world: &World,
+        filter: &FilterSampler,
+        key: Key,
+        (x, y): (u32, u32),
+        index: u32,
+    ) -> (Self, f32) {
+        let mut sampler = Sampler::new(Sequence::Sobol, key, u64::from(index));
+        let offset = filter.sample(sampler.next_2d());
+        // Drawn without a lens, too, so that later sets of four stay aligned.
+        let u_lens = sampler.next_2d();
+        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
+        let ray = world.camera().ray(position, u_lens);
+        (Self { ray, key, index, sampler }, offset.weight)
+    }
+}
+
+/// The key of the samples of a pixel of the whole picture.
+pub(crate) fn pixel_key(seed: u64, iteration: u64, (x, y): (u32, u32)) -> Key {
+    Key::new(seed, iteration, Stream::Camera).with(u64::from(y) << 32 | u64::from(x))
+}
+
 /// What a camera pass gathered.
-pub(crate) struct Exposure<T> {
+pub(crate) struct Exposure<P, T> {
     /// One for each pixel of the window, row by row.
-    pub sums: Vec<PixelSum>,
+    pub sums: Vec<P>,
     /// What the estimates added up besides.
     pub total: T,
     /// Whether every pixel has its samples; where the observer cancelled, some tiles have none.
     pub complete: bool,
 }
 
-/// Takes samples of every pixel of the window with `estimate`, which adds to a total `T` of its own
-/// and returns radiance. The sums are the same however the work is shared out.
-pub(crate) fn camera_pass<T: Default + Send, S>(
+/// Takes samples of every pixel of the window with `estimate`, which adds each with its weight to the sum
+/// `P` of its pixel, and to a total `T`. The sums are the same however the work is shared out.
+pub(crate) fn camera_pass<P: Clone + Default + Send, T: Default + Send, S>(
     world: &World,
     pass: &CameraPass,
     observer: &dyn Observer,
     scratch: impl Fn() -> S + Sync,
     join: impl Fn(&mut T, &T),
-    estimate: impl Fn(PixelSample, &mut S, &mut T) -> crate::color::Rgb + Sync,
-) -> Exposure<T> {
+    estimate: impl Fn(PixelSample, f32, &mut S, &mut P, &mut T) + Sync,
+) -> Exposure<P, T> {
     let window = world.scene().film.window();
     let filter = FilterSampler::new(world.scene().film.filter);
     let pixels = u64::from(window.width) * u64::from(window.height);
     let work = Work::begin(observer, Phase::Camera, pixels * u64::from(pass.samples));
     let columns = window.width.div_ceil(TILE);
-    let key = Key::new(pass.seed, pass.iteration, Stream::Camera);
-    let tiles: Vec<Option<(Vec<PixelSum>, T)>> = (0..columns * window.height.div_ceil(TILE))
+    let tiles: Vec<Option<(Vec<P>, T)>> = (0..columns * window.height.div_ceil(TILE))
         .into_par_iter()
         .map_init(&scratch, |scratch, tile| {
             let (x0, y0) = (tile % columns * TILE, tile / columns * TILE);
@@ -70,18 +93,12 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
             let mut total = T::default();
             let mut sums = Vec::with_capacity(((x1 - x0) * (y1 - y0)) as usize);
             for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
-                let (x, y) = (x + window.x, y + window.y);
-                let key = key.with(u64::from(y) << 32 | u64::from(x));
-                let mut sum = PixelSum::default();
+                let place = (x + window.x, y + window.y);
+                let key = pixel_key(pass.seed, pass.iteration, place);
+                let mut sum = P::default();
                 for index in pass.first_sample..pass.first_sample + pass.samples {
-                    let mut sampler = Sampler::new(Sequence::Sobol, key, u64::from(index));
-                    let offset = filter.sample(sampler.next_2d());
-                    // Drawn without a lens, too, so that later sets of four stay aligned.
-                    let u_lens = sampler.next_2d();
-                    let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
-                    let ray = world.camera().ray(position, u_lens);
-                    let sample = PixelSample { ray, key, index, sampler };
-                    sum.add(estimate(sample, scratch, &mut total), offset.weight);
+                    let (sample, weight) = PixelSample::new(world, &filter, key, place, index);
+                    estimate(sample, weight, scratch, &mut sum, &mut total);
                 }
                 sums.push(sum);
             }
@@ -90,7 +107,7 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
         })
         .collect();
     let complete = tiles.iter().all(Option::is_some);
-    let mut film = vec![PixelSum::default(); pixels as usize];
+    let mut film = vec![P::default(); pixels as usize];
     let mut total = T::default();
     for (tile, done) in (0..).zip(tiles) {
         let Some((sums, part)) = done else { continue };
@@ -99,7 +116,7 @@ pub(crate) fn camera_pass<T: Default + Send, S>(
         let width = (x0 + TILE).min(window.width) - x0;
         for (row, sums) in (y0..).zip(sums.chunks(width as usize)) {
             let start = row as usize * window.width as usize + x0 as usize;
-            film[start..start + sums.len()].copy_from_slice(sums);
+            film[start..start + sums.len()].clone_from_slice(sums);
         }
     }
     Exposure { sums: film, total, complete }

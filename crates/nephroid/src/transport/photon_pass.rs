@@ -175,37 +175,73 @@ pub fn photon_pass(
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<PhotonPass> {
+    let record = |(): &mut (), _, photon| photon;
+    let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
+    Some(PhotonPass {
+        global: Photons::new(plan.global.paths, pass.global),
+        caustic: Photons::new(plan.caustic.paths, pass.caustic),
+        afterglow: Photons::new(plan.caustic.paths, pass.afterglow),
+        ledger: pass.ledger,
+    })
+}
+
+/// What [`photon_pass_with`] stored for each map, and the books of the paths for the global map.
+pub(super) struct Stored<T> {
+    pub global: Vec<T>,
+    pub caustic: Vec<T>,
+    pub afterglow: Vec<T>,
+    pub ledger: Ledger,
+}
+
+/// [`photon_pass`], storing what `record` makes of each photon. It is shown every landing of a path in turn,
+/// stored or not, with the number of the path and a state that begins anew with each.
+#[expect(clippy::too_many_arguments, reason = "those of `photon_pass`, and one")]
+pub(super) fn photon_pass_with<H: Default, T: Send>(
+    world: &World,
+    settings: &WalkSettings,
+    plan: &PhotonPlan,
+    extras: Extras,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+    record: impl Fn(&mut H, u64, Photon) -> T + Sync,
+) -> Option<Stored<T>> {
     let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
     let global_key = Key::new(seed, iteration, Stream::GlobalPhotons);
     let ([global, _], ledger) =
-        emit(world, settings, MapKind::Global, plan.global.paths, global_key, &work, |kind| match kind {
-            PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
-            PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
-            PhotonKind::Caustic => (None, Next::Continue),
+        emit(world, settings, MapKind::Global, plan.global.paths, global_key, &work, &record, |kind| {
+            match kind {
+                PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
+                PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
+                PhotonKind::Caustic => (None, Next::Continue),
+            }
         })?;
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
     let beyond = if extras.afterglow { Next::Continue } else { Next::Stop };
     let ([caustic, afterglow], _) =
-        emit(world, settings, MapKind::Caustic, plan.caustic.paths, caustic_key, &work, |kind| match kind {
-            PhotonKind::Caustic => (Some(0), beyond),
-            PhotonKind::Afterglow => (Some(1), Next::Stop),
-            // Whatever else follows is the global map's.
-            PhotonKind::Direct | PhotonKind::Global => (None, Next::Stop),
+        emit(world, settings, MapKind::Caustic, plan.caustic.paths, caustic_key, &work, &record, |kind| {
+            match kind {
+                PhotonKind::Caustic => (Some(0), beyond),
+                PhotonKind::Afterglow => (Some(1), Next::Stop),
+                // Whatever else follows is the global map's.
+                PhotonKind::Direct | PhotonKind::Global => (None, Next::Stop),
+            }
         })?;
-    Some(PhotonPass { global, caustic, afterglow, ledger })
+    Some(Stored { global, caustic, afterglow, ledger })
 }
 
 /// Emits paths and stores their photons in two lists, as `keep` says.
-fn emit(
+fn emit<H: Default, T: Send>(
     world: &World,
     settings: &WalkSettings,
     map: MapKind,
     paths: u64,
     key: Key,
     work: &Work<'_>,
+    record: &(impl Fn(&mut H, u64, Photon) -> T + Sync),
     keep: impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync,
-) -> Option<([Photons; 2], Ledger)> {
-    let mut photons: [Vec<Photon>; 2] = Default::default();
+) -> Option<([Vec<T>; 2], Ledger)> {
+    let mut photons = [Vec::new(), Vec::new()];
     let mut ledger = Ledger::new(world.light_count());
     let chunks = paths.div_ceil(CHUNK);
     for first in (0..chunks).step_by(BATCH) {
@@ -213,7 +249,7 @@ fn emit(
             .into_par_iter()
             .map(|chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-                trace(world, settings, map, range, key, work, &keep)
+                trace(world, settings, map, range, key, work, record, &keep)
             })
             .collect();
         for (stored, books) in traced {
@@ -226,20 +262,21 @@ fn emit(
             return None;
         }
     }
-    Some((photons.map(|list| Photons::new(paths, list)), ledger))
+    Some((photons, ledger))
 }
 
 /// Traces a range of paths; none if the observer cancelled.
-fn trace(
+fn trace<H: Default, T>(
     world: &World,
     settings: &WalkSettings,
     map: MapKind,
     paths: Range<u64>,
     key: Key,
     work: &Work<'_>,
+    record: &impl Fn(&mut H, u64, Photon) -> T,
     keep: &(impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync),
-) -> ([Vec<Photon>; 2], Ledger) {
-    let mut stored: [Vec<Photon>; 2] = Default::default();
+) -> ([Vec<T>; 2], Ledger) {
+    let mut stored = [Vec::new(), Vec::new()];
     let mut ledger = Ledger::new(world.light_count());
     if work.cancelled() {
         return (stored, ledger);
@@ -247,10 +284,12 @@ fn trace(
     ledger.paths = paths.end - paths.start;
     for path in paths {
         let mut sampler = Sampler::new(Sequence::Independent, key, path);
+        let mut history = H::default();
         walk(world, settings, map, path, &mut sampler, &mut ledger.lights, |photon, kind| {
             let (list, next) = keep(kind);
+            let recorded = record(&mut history, path, photon);
             if let Some(list) = list {
-                stored[list].push(photon);
+                stored[list].push(recorded);
             }
             next
         });

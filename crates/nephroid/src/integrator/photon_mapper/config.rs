@@ -1,6 +1,6 @@
 use crate::light::SphereSampling;
 use crate::photon_map::{Bandwidth, Kernel, PhotonMap};
-use crate::transport::{DirectLights, LightChoice, PhotonTargets, WalkSettings};
+use crate::transport::{DirectLights, Extras, LightChoice, PhotonTargets, WalkSettings};
 
 /// Settings of the photon mapper. No length in it has a default in scene units.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,6 +137,11 @@ impl PhotonMapperConfig {
             emit_max: self.emit_max,
             store_direct: self.direct == DirectSource::Map,
         }
+    }
+
+    /// What photon passes store besides, where gather rays are sent or not.
+    pub(crate) fn extras(&self, gathers: bool) -> Extras {
+        Extras { direct: self.direct == DirectSource::Map, afterglow: gathers }
     }
 
     /// Gather rays of each camera sample; `None` reads the maps on the spot.

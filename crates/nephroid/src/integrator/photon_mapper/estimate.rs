@@ -4,10 +4,10 @@ use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
 use crate::color::Rgb;
-use crate::integrator::Components;
+use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
-use crate::photon_map::{Bandwidth, NearestHeap, PhotonMap, Query, gather};
+use crate::photon_map::{Bandwidth, NearestHeap, Query, gather};
 use crate::sampling::{Key, Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -24,8 +24,12 @@ const GATHER_PHOTONS: u32 = 6;
 /// Surfaces that a gather ray may go on from because they are too near to be seen through the map.
 const MAX_NEAR_SURFACES: u32 = 8;
 
-/// Memory that estimates lend one another.
-pub(crate) type Scratch = NearestHeap;
+/// What an estimate works with.
+struct Tools<'t, P> {
+    /// Memory that look-ups lend one another.
+    heap: &'t mut NearestHeap,
+    probe: &'t mut P,
+}
 
 /// What the camera pass of one iteration looks up.
 pub(crate) struct PhotonMapper<'a> {
@@ -90,14 +94,6 @@ impl<'a> PhotonMapper<'a> {
         }
     }
 
-    /// Estimates the light of one camera sample.
-    pub fn radiance(&self, sample: &mut PixelSample, scratch: &mut Scratch) -> Components {
-        let mut out = Components::default();
-        let ray = sample.ray;
-        self.trace(ray, Rgb::WHITE, 1, 1, sample, scratch, &mut out);
-        out
-    }
-
     fn fits(&self, depth: u32) -> bool {
         self.config.max_depth.is_none_or(|max| depth <= max)
     }
@@ -105,34 +101,40 @@ impl<'a> PhotonMapper<'a> {
     /// Follows a path from the camera over specular surfaces and shades the first that is not.
     /// `branch` numbers the ways of a path that was split.
     #[expect(clippy::too_many_arguments, reason = "the state of a path that splits in two")]
-    fn trace(
+    fn trace<P: Probe>(
         &self,
         mut ray: Ray,
         mut throughput: Rgb,
         mut depth: u32,
         branch: u64,
         sample: &mut PixelSample,
-        scratch: &mut Scratch,
+        tools: &mut Tools<'_, P>,
         out: &mut Components,
     ) {
+        tools.probe.begin(None, Rgb::WHITE);
         while self.fits(depth) {
+            tools.probe.carry(throughput);
             let Some(hit) = self.world.intersect(&ray) else {
-                out.emitted += throughput * self.world.sky(ray.direction);
+                let sky = self.world.sky(ray.direction);
+                out.emitted += throughput * sky;
+                tools.probe.light(LightPart::Emitted, sky);
                 return;
             };
             let wo = -ray.direction;
             if let Some((_, emitted)) = self.world.emitted(&hit, wo) {
                 out.emitted += throughput * emitted;
+                tools.probe.light(LightPart::Emitted, emitted);
             }
             let bsdf = self.world.bsdf(&hit, wo);
             if bsdf.is_null() {
                 ray = leave(&hit.point, ray.direction);
                 continue;
             }
+            tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
             if !bsdf.is_dirac() {
                 let vertex = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
                 let key = sample.key.with(branch);
-                self.shade(&vertex, throughput, key, sample, scratch, out);
+                self.shade(&vertex, throughput, key, sample, tools, out);
                 return;
             }
             let lobes = bsdf.dirac_lobes(wo, Transport::Radiance);
@@ -140,7 +142,7 @@ impl<'a> PhotonMapper<'a> {
                 for (lobe, side) in [(a, 0), (b, 1)] {
                     let ray = leave(&hit.point, lobe.wi);
                     let branch = branch << 1 | side;
-                    self.trace(ray, throughput * lobe.weight, depth + 1, branch, sample, scratch, out);
+                    self.trace(ray, throughput * lobe.weight, depth + 1, branch, sample, tools, out);
                 }
                 return;
             }
@@ -155,40 +157,50 @@ impl<'a> PhotonMapper<'a> {
     }
 
     /// Adds the light that a surface reflects towards the camera.
-    fn shade(
+    fn shade<P: Probe>(
         &self,
         vertex: &Vertex<'_>,
         throughput: Rgb,
         key: Key,
         sample: &mut PixelSample,
-        scratch: &mut Scratch,
+        tools: &mut Tools<'_, P>,
         out: &mut Components,
     ) {
         let show = self.config.show;
         let shows_direct = matches!(show, Show::All | Show::Direct);
         let shows_global = matches!(show, Show::All | Show::Indirect | Show::Global);
         if shows_direct && self.config.direct == DirectSource::Rays && self.fits(vertex.depth + 1) {
-            out.direct += throughput * self.direct(vertex, &mut sample.sampler);
+            let direct = self.direct(vertex, &mut sample.sampler);
+            out.direct += throughput * direct;
+            tools.probe.light(LightPart::Direct, direct);
         }
         if !sample.index.is_multiple_of(self.stride) {
             return;
         }
         let throughput = throughput * self.stride as f32;
+        tools.probe.carry(throughput);
+        let look_up = |map, direct, other| LookUp { map, direct, other };
         if self.config.shows_caustics() {
-            out.caustic +=
-                throughput * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
+            let wanted = look_up(MapName::Caustic, None, Some(LightPart::Caustic));
+            out.caustic += throughput * self.look_up(&wanted, vertex, self.caustic_bandwidth, tools).1;
         }
         let gathers = self.gather_rays.is_some();
         if self.config.direct == DirectSource::Map || (shows_global && !gathers) {
             // What the map would blur is sampled below.
             let bsdf = if gathers { *vertex.bsdf } else { vertex.bsdf.diffuse_part() };
             let smooth = Vertex { bsdf: &bsdf, ..*vertex };
-            let (mut direct, global) =
-                self.look_up(&self.maps.global, &smooth, self.global_bandwidth, scratch);
+            // No ray will find a point light: its highlight is the photons', however blurred.
+            let highlights = shows_direct && !gathers && vertex.bsdf.has_glossy_lobe();
+            let wanted = look_up(
+                MapName::Global,
+                (shows_direct && !highlights).then_some(LightPart::Direct),
+                (shows_global && !gathers).then_some(LightPart::Global),
+            );
+            let (mut direct, global) = self.look_up(&wanted, &smooth, self.global_bandwidth, tools);
             if shows_direct {
-                // No ray will find a point light: its highlight is the photons', however blurred.
-                if !gathers && vertex.bsdf.has_glossy_lobe() {
-                    direct = self.look_up(&self.maps.global, vertex, self.global_bandwidth, scratch).0;
+                if highlights {
+                    let wanted = look_up(MapName::Global, Some(LightPart::Direct), None);
+                    direct = self.look_up(&wanted, vertex, self.global_bandwidth, tools).0;
                 }
                 out.direct += throughput * direct;
             }
@@ -203,54 +215,67 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), scratch);
+            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.heap);
             let first = u64::from(sample.index / self.stride) * u64::from(rays);
             let found: Rgb = (first..first + u64::from(rays))
                 .map(|ray| {
+                    tools.probe.begin(Some(ray), throughput / rays as f32);
                     let mut sampler = Sampler::new(Sequence::Sobol, key, ray);
-                    self.gather_ray(&vertex, guide.as_ref(), &mut sampler, scratch)
+                    self.gather_ray(&vertex, guide.as_ref(), &mut sampler, tools)
                 })
                 .sum();
             out.global += throughput * (found / rays as f32);
+            tools.probe.begin(None, throughput);
             if gathers {
-                out.global += throughput * self.afterglow(&vertex, scratch);
+                out.global += throughput * self.afterglow(&vertex, tools);
             }
         }
     }
 
     /// What a gather ray brings from where it lands: all of the light, or from near by what no ray that
-    /// goes on from there will bring. `sharp` is the share for which it brings caustics.
-    fn light_at(
+    /// goes on from there will bring. `sharp` is the share for which it brings caustics, and `throughput`
+    /// what reaches the surface that it left.
+    fn light_at<P: Probe>(
         &self,
         vertex: &Vertex<'_>,
         far: bool,
         sharp: Rgb,
+        throughput: Rgb,
         sampler: &mut Sampler,
-        scratch: &mut Scratch,
+        tools: &mut Tools<'_, P>,
     ) -> Rgb {
         let mut light = Rgb::BLACK;
+        tools.probe.carry(throughput);
         if self.config.direct == DirectSource::Rays {
-            light += self.direct(vertex, sampler);
+            let direct = self.direct(vertex, sampler);
+            light += direct;
+            tools.probe.light(LightPart::Global, direct);
         }
+        let global = Some(LightPart::Global);
         if !sharp.is_black() {
-            light += sharp * self.look_up(&self.maps.caustic, vertex, self.caustic_bandwidth, scratch).1;
+            tools.probe.carry(throughput * sharp);
+            let wanted = LookUp { map: MapName::Caustic, direct: None, other: global };
+            light += sharp * self.look_up(&wanted, vertex, self.caustic_bandwidth, tools).1;
+            tools.probe.carry(throughput);
         }
         if far || self.config.direct == DirectSource::Map {
             let bandwidth = Bandwidth::Fixed { radius: self.global_radius };
-            let (direct, other) = self.look_up(&self.maps.global, vertex, bandwidth, scratch);
+            let wanted = LookUp { map: MapName::Global, direct: global, other: global.filter(|_| far) };
+            let (direct, other) = self.look_up(&wanted, vertex, bandwidth, tools);
             light += if far { direct + other } else { direct };
         }
         if !far {
-            light += self.afterglow(vertex, scratch);
+            light += self.afterglow(vertex, tools);
         }
         light
     }
 
     /// The light of caustics on other surfaces, which gather rays leave out: a small bright caustic
     /// that few of them chance upon makes white specks, and its photons one bounce on do not.
-    fn afterglow(&self, vertex: &Vertex<'_>, scratch: &mut Scratch) -> Rgb {
+    fn afterglow<P: Probe>(&self, vertex: &Vertex<'_>, tools: &mut Tools<'_, P>) -> Rgb {
         let smooth = Vertex { bsdf: &vertex.bsdf.diffuse_part(), ..*vertex };
-        self.look_up(&self.maps.afterglow, &smooth, self.afterglow_bandwidth, scratch).1
+        let wanted = LookUp { map: MapName::Afterglow, direct: None, other: Some(LightPart::Global) };
+        self.look_up(&wanted, &smooth, self.afterglow_bandwidth, tools).1
     }
 
     fn direct(&self, vertex: &Vertex<'_>, sampler: &mut Sampler) -> Rgb {
@@ -259,14 +284,19 @@ impl<'a> PhotonMapper<'a> {
     }
 
     /// Reflected radiance by density estimation, direct (L D) and other photons apart.
-    fn look_up(
+    fn look_up<P: Probe>(
         &self,
-        map: &PhotonMap,
+        wanted: &LookUp,
         vertex: &Vertex<'_>,
         bandwidth: Bandwidth,
-        scratch: &mut Scratch,
+        tools: &mut Tools<'_, P>,
     ) -> (Rgb, Rgb) {
         let Vertex { point, bsdf, wo, depth } = *vertex;
+        let map = match wanted.map {
+            MapName::Global => &self.maps.global,
+            MapName::Caustic => &self.maps.caustic,
+            MapName::Afterglow => &self.maps.afterglow,
+        };
         if map.is_empty() || bsdf.is_black() {
             return (Rgb::BLACK, Rgb::BLACK);
         }
@@ -276,11 +306,14 @@ impl<'a> PhotonMapper<'a> {
             max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
         };
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
-        gather(map, &query, self.config.kernel, bandwidth, scratch, |photon, weight| {
+        let Tools { heap, probe } = tools;
+        let gathered = gather(map, &query, self.config.kernel, bandwidth, heap, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
             let radiance = f * photon.power * weight;
             *(if photon.depth == 1 { &mut direct } else { &mut other }) += radiance;
+            probe.photon(photon, radiance);
         });
+        probe.look_up(wanted, gathered);
         (direct, other)
     }
 
@@ -290,12 +323,12 @@ impl<'a> PhotonMapper<'a> {
     /// and the caustic map's.
     /// Where that surface is nearer than the map can resolve, a ray goes on from it in place of the
     /// look-up; corners stay as bright as they are.
-    fn gather_ray(
+    fn gather_ray<P: Probe>(
         &self,
         vertex: &Vertex<'_>,
         guide: Option<&Facing<'_>>,
         sampler: &mut Sampler,
-        scratch: &mut Scratch,
+        tools: &mut Tools<'_, P>,
     ) -> Rgb {
         let mut found = Rgb::BLACK;
         let Some((mut ray, mut throughput)) = start_gather(vertex, guide, sampler) else {
@@ -316,10 +349,11 @@ impl<'a> PhotonMapper<'a> {
                 ray = leave(&hit.point, ray.direction);
                 continue;
             }
+            tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
             if !bsdf.is_dirac() {
                 let there = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
                 let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
-                found += throughput * self.light_at(&there, far, sharp, sampler, scratch);
+                found += throughput * self.light_at(&there, far, sharp, throughput, sampler, tools);
                 if far {
                     break;
                 }
@@ -338,6 +372,20 @@ impl<'a> PhotonMapper<'a> {
             depth += 1;
         }
         found
+    }
+}
+
+impl Estimator for PhotonMapper<'_> {
+    fn radiance<P: Probe>(
+        &self,
+        sample: &mut PixelSample,
+        heap: &mut NearestHeap,
+        probe: &mut P,
+    ) -> Components {
+        let mut out = Components::default();
+        let ray = sample.ray;
+        self.trace(ray, Rgb::WHITE, 1, 1, sample, &mut Tools { heap, probe }, &mut out);
+        out
     }
 }
 

@@ -8,12 +8,12 @@ mod guide;
 mod guides;
 
 pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show};
-pub(crate) use estimate::{PhotonMapper, Scratch};
+pub(crate) use estimate::PhotonMapper;
 use guides::Guides;
 
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::PhotonMap;
-use crate::transport::{Extras, Ledger, PhotonPlan, photon_pass};
+use crate::transport::{Ledger, PhotonPlan, photon_pass};
 use crate::world::World;
 
 /// The photon maps of one iteration.
@@ -37,8 +37,8 @@ impl Maps {
         iteration: u64,
         observer: &dyn Observer,
     ) -> Option<Self> {
-        let extras = Extras { direct: config.direct == DirectSource::Map, afterglow: gathers };
         let settings = config.walk_settings();
+        let extras = config.extras(gathers);
         let pass = photon_pass(world, &settings, plan, extras, seed, iteration, observer)?;
         let work = Work::begin(observer, Phase::Maps, 3);
         let build = |photons| {
@@ -50,7 +50,12 @@ impl Maps {
             || build(pass.global),
             || rayon::join(|| build(pass.caustic), || build(pass.afterglow)),
         );
+        Some(Self::new([global, caustic, afterglow], gathers, pass.ledger))
+    }
+
+    /// Of the global, the caustic and the afterglow map.
+    pub fn new([global, caustic, afterglow]: [PhotonMap; 3], gathers: bool, ledger: Ledger) -> Self {
         let guides = if gathers { Guides::new(&global) } else { Guides::none() };
-        Some(Self { global, caustic, afterglow, guides, ledger: pass.ledger })
+        Self { global, caustic, afterglow, guides, ledger }
     }
 }

@@ -1,0 +1,113 @@
+//! Further values of a picture, as layers of an OpenEXR file.
+
+use nephroid::film::{Aov, AovFilm, AovImage};
+use nephroid::integrator::Method;
+use nephroid_formats::image::{Layer, LayerData};
+use nephroid_formats::mitsuba::AovLayer;
+
+use crate::console::Messages;
+use crate::exit::Failure;
+use crate::lab_args::unknown;
+use crate::output::{Kind, Output};
+
+/// A layer to write.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerPlan {
+    /// What it is called.
+    pub name: String,
+    /// What is in it.
+    pub aov: Aov,
+    /// What its channels are called.
+    pub channels: &'static [&'static str],
+}
+
+/// A layer with its values.
+#[derive(Clone, Debug)]
+pub struct DevelopedLayer {
+    plan: LayerPlan,
+    image: AovImage,
+}
+
+impl DevelopedLayer {
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.plan.name
+    }
+}
+
+/// The value of a name on the command line.
+pub fn parse(name: &str) -> Result<Aov, String> {
+    Aov::parse(name)
+        .ok_or_else(|| unknown(name, "there is no such value: it must be", &Aov::ALL.map(Aov::name)))
+}
+
+/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names.
+pub fn choose(
+    flags: &[Aov],
+    of_scene: &[AovLayer],
+    method: &Method,
+    outputs: &[Output],
+    messages: &mut Messages,
+) -> Result<Vec<LayerPlan>, Failure> {
+    let path = matches!(method, Method::Path(_));
+    let has_exr = outputs.iter().any(|output| output.kind == Kind::Exr);
+    let mut layers: Vec<LayerPlan> = Vec::new();
+    for aov in flags {
+        if path && aov.is_of_photons() {
+            let name = aov.name();
+            return Err(Failure::Usage(format!(
+                "--aov {name}: the integrator path makes no estimates from photons, so it has no {name}"
+            )));
+        }
+        let plan = LayerPlan { name: aov.name().to_owned(), aov: *aov, channels: aov.channels() };
+        if !layers.contains(&plan) {
+            layers.push(plan);
+        }
+    }
+    if !layers.is_empty() && !has_exr {
+        let message = "--aov: layers are written to OpenEXR files only; name one with -o FILE.exr";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    for layer in of_scene {
+        if path && layer.aov.is_of_photons() {
+            messages.warning(&format!(
+                "the layer \"{}\" of the scene is left out: the integrator path makes no estimates from photons",
+                layer.name
+            ));
+        } else if !layers.iter().any(|other| other.name == layer.name) {
+            layers.push(LayerPlan { name: layer.name.clone(), aov: layer.aov, channels: layer.channels() });
+        }
+    }
+    if !layers.is_empty() && !has_exr {
+        messages.warning("the layers that the scene asks for are left out: no OpenEXR file is written");
+        layers.clear();
+    }
+    Ok(layers)
+}
+
+/// The values of each layer.
+pub fn develop(layers: &[LayerPlan], film: Option<&AovFilm>) -> Vec<DevelopedLayer> {
+    let develop = |plan: &LayerPlan| {
+        let image = film?.develop(plan.aov)?;
+        Some(DevelopedLayer { plan: plan.clone(), image })
+    };
+    layers.iter().filter_map(develop).collect()
+}
+
+/// Calls `write` with the layers as they are written, behind `first`.
+pub fn with_layers<T>(
+    first: Layer<'_>,
+    layers: &[DevelopedLayer],
+    write: impl FnOnce(&[Layer<'_>]) -> T,
+) -> T {
+    let channels: Vec<Vec<(&str, &[f32])>> = layers
+        .iter()
+        .map(|l| l.plan.channels.iter().copied().zip(l.image.channels.iter().map(Vec::as_slice)).collect())
+        .collect();
+    let mut all = vec![first];
+    all.extend(layers.iter().zip(&channels).map(|(layer, channels)| {
+        let (width, height) = (layer.image.width, layer.image.height);
+        Layer { name: &layer.plan.name, data: LayerData::Channels { width, height, channels } }
+    }));
+    write(&all)
+}

@@ -1,0 +1,154 @@
+//! Watching how a camera sample is estimated.
+
+use super::Components;
+use crate::color::Rgb;
+use crate::film::{Aov, AovSample};
+use crate::material::Bsdf;
+use crate::math::Vec3;
+use crate::photon_map::{Gathered, NearestHeap, Photon};
+use crate::transport::PixelSample;
+use crate::world::Hit;
+
+/// The parts that light is booked under; see [`Components`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightPart {
+    /// Lamps and sky seen directly or through specular surfaces.
+    Emitted,
+    /// Light that met one surface that is not specular, and came straight to it.
+    Direct,
+    /// All other light.
+    Global,
+    /// Light that came to such a surface by specular ones.
+    Caustic,
+}
+
+/// The photon maps of an iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MapName {
+    /// Light after at least one bounce off a surface that is not specular, and direct light where that
+    /// comes from photons.
+    Global,
+    /// L S⁺ D.
+    Caustic,
+    /// L S⁺ D S* D, for surfaces whose other light gather rays bring.
+    Afterglow,
+}
+
+impl MapName {
+    /// Every one of them.
+    pub const ALL: [Self; 3] = [Self::Global, Self::Caustic, Self::Afterglow];
+
+    /// What the command line and exports call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Global => "global",
+            Self::Caustic => "caustic",
+            Self::Afterglow => "afterglow",
+        }
+    }
+}
+
+/// A surface that a path from the camera or a gather ray meets.
+pub(crate) struct Met<'a> {
+    pub hit: &'a Hit,
+    pub bsdf: &'a Bsdf,
+    pub wo: Vec3,
+    /// Segments from the lens to here.
+    pub depth: u32,
+    /// What reaches the camera, or the surface that the gather ray left, of light from here.
+    pub throughput: Rgb,
+    /// Whether only specular surfaces lie before it.
+    pub first: bool,
+}
+
+/// Which part of a picture the photons of a look-up count for: those of light that came straight from a
+/// light, and all others. `None` if they do not count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LookUp {
+    pub map: MapName,
+    pub direct: Option<LightPart>,
+    pub other: Option<LightPart>,
+}
+
+/// Watches the estimate of one camera sample. What it is told changes nothing; a render that wants to
+/// know nothing passes `()`, and pays nothing.
+pub(crate) trait Probe {
+    /// What follows reaches the camera by a gather ray, or without one, multiplied by `base`.
+    fn begin(&mut self, _gather_ray: Option<u64>, _base: Rgb) {}
+    /// What follows is multiplied by this before `base`.
+    fn carry(&mut self, _throughput: Rgb) {}
+    /// A surface is met, null ones excepted.
+    fn surface(&mut self, _met: &Met<'_>) {}
+    /// Light that was found without photons.
+    fn light(&mut self, _part: LightPart, _radiance: Rgb) {}
+    /// A photon counts in the look-up that is going on.
+    fn photon(&mut self, _photon: &Photon, _radiance: Rgb) {}
+    /// A look-up is done.
+    fn look_up(&mut self, _look_up: &LookUp, _gathered: Gathered) {}
+}
+
+impl Probe for () {}
+
+/// An integrator that is ready to estimate camera samples.
+pub(crate) trait Estimator: Sync {
+    /// Estimates the light of one camera sample.
+    fn radiance<P: Probe>(
+        &self,
+        sample: &mut PixelSample,
+        heap: &mut NearestHeap,
+        probe: &mut P,
+    ) -> Components;
+}
+
+/// Takes down the further values of a camera sample.
+pub(crate) struct AovProbe {
+    origin: Vec3,
+    gathering: bool,
+    sample: AovSample,
+}
+
+impl AovProbe {
+    pub fn new(sample: &PixelSample) -> Self {
+        Self { origin: sample.ray.origin, gathering: false, sample: AovSample::default() }
+    }
+
+    /// All values, those of light included.
+    pub fn finish(mut self, light: &Components) -> AovSample {
+        self.sample.add_light(light.direct, light.global, light.caustic, light.emitted);
+        self.sample
+    }
+}
+
+impl Probe for AovProbe {
+    fn begin(&mut self, gather_ray: Option<u64>, _base: Rgb) {
+        self.gathering = gather_ray.is_some();
+    }
+
+    fn surface(&mut self, met: &Met<'_>) {
+        if !met.first {
+            return;
+        }
+        let point = &met.hit.point;
+        let facing = |n: Vec3| if met.wo.dot(point.ng) > 0.0 { n } else { -n };
+        if !self.sample.hit {
+            self.sample.hit = true;
+            self.sample.add(Aov::Depth, &[(point.position - self.origin).length()]);
+            self.sample.add(Aov::Position, &point.position.to_array());
+            self.sample.add(Aov::GeometricNormal, &facing(point.ng).to_array());
+            self.sample.add(Aov::Uv, &point.uv.to_array());
+        }
+        if !met.bsdf.is_dirac() {
+            let albedo = met.bsdf.diffuse_albedo() + met.bsdf.glossy_albedo();
+            self.sample.add(Aov::Albedo, &(met.throughput * albedo).to_array());
+            self.sample.add(Aov::Normal, &(facing(point.ns) * met.throughput.mean()).to_array());
+        }
+    }
+
+    fn look_up(&mut self, look_up: &LookUp, gathered: Gathered) {
+        if !self.gathering && look_up.map != MapName::Afterglow {
+            self.sample.look_ups += 1;
+            self.sample.add(Aov::Radius, &[gathered.radius]);
+            self.sample.add(Aov::Count, &[gathered.count as f32]);
+        }
+    }
+}

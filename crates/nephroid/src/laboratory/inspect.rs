@@ -1,0 +1,170 @@
+//! One pixel of a render, estimated again with somebody watching.
+
+use super::catalogue::Catalogue;
+use super::inspect_probe::{InspectProbe, InspectedSample};
+use super::photons;
+use crate::color::Rgb;
+use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
+use crate::integrator::{Components, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig};
+use crate::observer::Observer;
+use crate::photon_map::NearestHeap;
+use crate::session::{RenderSettings, STEP_SAMPLES};
+use crate::transport::{Ledger, PhotonPlan, PixelSample, pixel_key};
+use crate::world::World;
+
+/// A pixel being estimated again: the same samples in the same steps as a
+/// [`Session`](crate::session::Session) with the same settings takes, of this pixel alone.
+pub struct Inspector<'w> {
+    world: &'w World,
+    settings: RenderSettings,
+    pixel: (u32, u32),
+    plan: PhotonPlan,
+    maps: Option<(Maps, [Catalogue; 3])>,
+    film: Film,
+    parts: AovFilm,
+    iteration: u64,
+    /// Samples taken in the current iteration, and in all.
+    samples: u32,
+    samples_in_all: u64,
+    inspected: Vec<InspectedSample>,
+}
+
+/// What became of a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PixelReport {
+    /// The pixel of the render, to the bit.
+    pub radiance: Rgb,
+    /// The parts that it is the sum of, up to rounding.
+    pub light: Components,
+    /// Every sample.
+    pub samples: Vec<InspectedSample>,
+}
+
+impl<'w> Inspector<'w> {
+    /// `pixel` counts columns and rows of the whole picture from its upper left corner.
+    pub fn new(
+        world: &'w World,
+        settings: RenderSettings,
+        pixel: (u32, u32),
+        observer: &dyn Observer,
+    ) -> Self {
+        let plan = match &settings.method {
+            Method::PhotonMapper(config) => photons::plan(world, config, settings.seed, observer),
+            Method::Path(_) => PhotonPlan::default(),
+        };
+        Self {
+            world,
+            settings,
+            pixel,
+            plan,
+            maps: None,
+            film: Film::new(1, 1),
+            parts: AovFilm::new(1, 1, &[Aov::Direct, Aov::Global, Aov::Caustic, Aov::Emitted]),
+            iteration: 0,
+            samples: 0,
+            samples_in_all: 0,
+            inspected: Vec::new(),
+        }
+    }
+
+    /// Takes the samples of one step of a session. False if the observer cancelled.
+    pub fn step(&mut self, observer: &dyn Observer) -> bool {
+        let whole = self.settings.samples_per_pixel.max(1);
+        if self.samples >= whole {
+            (self.iteration, self.samples, self.maps) = (self.iteration + 1, 0, None);
+        }
+        let taken = STEP_SAMPLES.min(whole - self.samples);
+        match self.settings.method.clone() {
+            Method::PhotonMapper(config) => {
+                if self.maps.is_none() {
+                    self.maps = self.build(&config, observer);
+                }
+                let Some((maps, catalogues)) = self.maps.take() else { return false };
+                let mapper = PhotonMapper::new(self.world, &config, &maps, whole);
+                self.take(&mapper, Some(&catalogues), taken);
+                self.maps = Some((maps, catalogues));
+            }
+            Method::Path(config) => {
+                self.take(&PathTracer { world: self.world, config: &config }, None, taken);
+            }
+        }
+        self.samples += taken;
+        self.samples_in_all += u64::from(taken);
+        true
+    }
+
+    /// Iterations that have all their samples.
+    pub fn iterations(&self) -> u64 {
+        self.iteration + u64::from(self.samples >= self.settings.samples_per_pixel.max(1))
+    }
+
+    /// Samples taken.
+    pub fn samples(&self) -> u64 {
+        self.samples_in_all
+    }
+
+    /// What was found.
+    pub fn finish(self) -> PixelReport {
+        let part = |aov| {
+            let channels = self.parts.develop(aov).map_or(Vec::new(), |image| image.channels.concat());
+            <[f32; 3]>::try_from(channels).map_or(Rgb::BLACK, |[r, g, b]| Rgb::new(r, g, b))
+        };
+        let light = Components {
+            emitted: part(Aov::Emitted),
+            direct: part(Aov::Direct),
+            global: part(Aov::Global),
+            caustic: part(Aov::Caustic),
+        };
+        PixelReport { radiance: self.film.develop().pixels[0], light, samples: self.inspected }
+    }
+
+    fn build(&self, config: &PhotonMapperConfig, observer: &dyn Observer) -> Option<(Maps, [Catalogue; 3])> {
+        let RenderSettings { samples_per_pixel, seed, .. } = self.settings;
+        let pass = photons::record(
+            self.world,
+            config,
+            &self.plan,
+            samples_per_pixel,
+            seed,
+            self.iteration,
+            observer,
+        )?;
+        let (global, of_global) = Catalogue::build(pass.global, pass.global_paths);
+        let (caustic, of_caustic) = Catalogue::build(pass.caustic, pass.caustic_paths);
+        let (afterglow, of_afterglow) = Catalogue::build(pass.afterglow, pass.caustic_paths);
+        let gathers = config.gather_rays(samples_per_pixel).is_some();
+        let maps = Maps::new([global, caustic, afterglow], gathers, Ledger::default());
+        Some((maps, [of_global, of_caustic, of_afterglow]))
+    }
+
+    fn take(&mut self, estimator: &impl Estimator, catalogues: Option<&[Catalogue; 3]>, samples: u32) {
+        let filter = FilterSampler::new(self.world.scene().film.filter);
+        let key = pixel_key(self.settings.seed, self.iteration, self.pixel);
+        let (mut heap, mut sum, mut parts) = (NearestHeap::new(), PixelSum::default(), AovSum::default());
+        for index in self.samples..self.samples + samples {
+            let (mut sample, weight) = PixelSample::new(self.world, &filter, key, self.pixel, index);
+            let (origin, direction) = (sample.ray.origin, sample.ray.direction);
+            let mut probe = InspectProbe::new(catalogues);
+            let light = estimator.radiance(&mut sample, &mut heap, &mut probe);
+            sum.add(light.total(), weight);
+            parts.add(&AovSample::of_light(light.direct, light.global, light.caustic, light.emitted), weight);
+            let (surfaces, rays, look_ups) = Default::default();
+            let iteration = self.iteration;
+            let mut report = InspectedSample {
+                iteration,
+                index,
+                origin,
+                direction,
+                weight,
+                light,
+                surfaces,
+                rays,
+                look_ups,
+            };
+            probe.finish(&mut report);
+            self.inspected.push(report);
+        }
+        self.film.add_iteration(&[sum]);
+        self.parts.add_iteration([parts].iter());
+    }
+}

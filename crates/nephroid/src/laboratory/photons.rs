@@ -1,0 +1,83 @@
+//! The photons that the maps of an iteration hold.
+
+use crate::integrator::{MapName, PhotonMapperConfig};
+use crate::observer::{Observer, Phase, Work};
+use crate::photon_map::Photon;
+use crate::transport::{Bounces, PhotonPlan, RecordedPass, RecordedPhoton, record_photon_pass};
+use crate::world::World;
+
+/// A photon of a map, with what is known of its path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapPhoton {
+    /// Where it landed, and its share of the light's power in W: divided by the paths emitted for its map.
+    pub photon: Photon,
+    /// The map that holds it.
+    pub map: MapName,
+    /// The number of its path among those emitted for the map.
+    pub path: u64,
+    /// What its path met before.
+    pub bounces: Bounces,
+}
+
+/// The photons of one iteration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapPhotons {
+    /// By map, and within a map by path.
+    pub photons: Vec<MapPhoton>,
+    /// Paths that were planned for each map, and whether the limit on emission made it thin.
+    pub plan: PhotonPlan,
+}
+
+/// Traces the photons that iteration `iteration` of a render with these settings has in its maps.
+/// `samples_per_pixel` is that of the render, of an iteration. `None` if the observer cancelled.
+pub fn record_photons(
+    world: &World,
+    config: &PhotonMapperConfig,
+    samples_per_pixel: u32,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+) -> Option<MapPhotons> {
+    let plan = plan(world, config, seed, observer);
+    let pass = record(world, config, &plan, samples_per_pixel, seed, iteration, observer)?;
+    let lists = [
+        (MapName::Global, pass.global, pass.global_paths),
+        (MapName::Caustic, pass.caustic, pass.caustic_paths),
+        (MapName::Afterglow, pass.afterglow, pass.caustic_paths),
+    ];
+    let mut photons = Vec::new();
+    for (map, list, paths) in lists {
+        // As `PhotonMap::build` divides.
+        let share = (1.0 / paths.max(1) as f64) as f32;
+        photons.extend(list.into_iter().map(|RecordedPhoton { photon, path, bounces }| {
+            let photon = Photon { power: photon.power * share, ..photon };
+            MapPhoton { photon, map, path, bounces }
+        }));
+    }
+    Some(MapPhotons { photons, plan })
+}
+
+/// The plan that a session makes.
+pub(super) fn plan(
+    world: &World,
+    config: &PhotonMapperConfig,
+    seed: u64,
+    observer: &dyn Observer,
+) -> PhotonPlan {
+    let _work = Work::begin(observer, Phase::Pilot, 1);
+    PhotonPlan::by_pilot(world, &config.walk_settings(), &config.targets(), seed)
+}
+
+/// The photon pass that a session makes, recorded.
+pub(super) fn record(
+    world: &World,
+    config: &PhotonMapperConfig,
+    plan: &PhotonPlan,
+    samples_per_pixel: u32,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+) -> Option<RecordedPass> {
+    let extras = config.extras(config.gather_rays(samples_per_pixel).is_some());
+    record_photon_pass(world, &config.walk_settings(), plan, extras, seed, iteration, observer)
+}
