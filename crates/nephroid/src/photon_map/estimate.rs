@@ -185,8 +185,14 @@ impl Spread {
 /// The squared distance of the metric in [`gather`]; `None` for a photon that does not count.
 #[inline]
 fn distance_sq<I: PhotonIndex>(map: &PhotonMap<I>, query: &Query, place: u32, dist_sq: f32) -> Option<f32> {
-    let (normal, depth) = map.normal_and_depth(place);
-    if normal.dot(query.normal) < MIN_NORMAL_COSINE || query.max_photon_depth.is_some_and(|max| depth > max) {
+    let payload = map.payload(place);
+    if query.max_photon_depth.is_some_and(|max| payload.depth() > max) {
+        return None;
+    }
+    // The cosine, without the root and division that would make the normal a unit vector.
+    let normal = payload.scaled_normal();
+    let cosine = normal.dot(query.normal);
+    if cosine <= 0.0 || cosine * cosine < MIN_NORMAL_COSINE * MIN_NORMAL_COSINE * normal.length_squared() {
         return None;
     }
     let height = (map.index().position(place) - query.position).dot(query.normal) * (1.0 / MAX_THICKNESS);

@@ -297,11 +297,11 @@ fn any_index_gives_the_same_calls() {
 #[test]
 fn estimates_stay_finite_in_odd_places() {
     let query = up(Vec3::ZERO);
-    let beam: PhotonMap = PhotonMap::build(Photons::new(100, vec![photon_at(Vec3::ZERO, Vec3::Z); 100]));
+    let beam: PhotonMap = PhotonMap::build(Photons::new(128, vec![photon_at(Vec3::ZERO, Vec3::Z); 128]));
     let nearest = |k, max_radius| Bandwidth::Nearest { k, max_radius };
     // All photons in the query's own place: everything within the largest radius counts.
     let (e, gathered) = irradiance(&beam, &query, Kernel::Box, nearest(50, 2.0));
-    assert_eq!(gathered, Gathered { radius: 2.0, count: 100 });
+    assert_eq!(gathered, Gathered { radius: 2.0, count: 128 });
     assert!((e - 1.0 / (4.0 * PI)).abs() < 1e-6);
     let nothing: PhotonMap = PhotonMap::build(Photons::default());
     let mut bandwidths = vec![nearest(0, 1.0), nearest(u32::MAX, 1.0), nearest(50, 1e-30)];

@@ -1,7 +1,7 @@
 //! The k-d tree against brute force.
 
 use super::testing::Rng;
-use super::{BruteForce, KdTree, NearestHeap, PhotonIndex};
+use super::{BruteForce, GridTree, NearestHeap, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
 /// Point sets that have broken k-d trees.
@@ -32,8 +32,8 @@ fn clouds() -> Vec<(&'static str, Vec<Vec3>)> {
 }
 
 /// A tree and the oracle over the same points in the order of the tree.
-fn tree_and_oracle(points: &[Vec3]) -> (KdTree, BruteForce) {
-    let (tree, order) = KdTree::build(points.len(), |i| points[i]);
+fn tree_and_oracle(points: &[Vec3]) -> (GridTree, BruteForce) {
+    let (tree, order) = GridTree::build(points.len(), |i| points[i]);
     let mut sorted = order.clone();
     sorted.sort_unstable();
     assert!((0u32..).zip(&sorted).all(|(i, &j)| i == j) && order.len() == points.len());
@@ -123,7 +123,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     let points: Vec<_> = (0..60_000).map(|_| (rng.point() * 50.0).floor()).collect();
     let built = [1, 2, 7].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| KdTree::build(points.len(), |i| points[i]))
+        pool.install(|| GridTree::build(points.len(), |i| points[i]))
     });
     assert!(built[0] == built[1] && built[0] == built[2]);
 }
@@ -131,7 +131,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
 #[test]
 fn equal_points_keep_the_order_of_their_numbers() {
     // So the tree does not depend on how the standard library selects, either.
-    let (_, order) = KdTree::build(5000, |_| Vec3::ONE);
+    let (_, order) = GridTree::build(5000, |_| Vec3::ONE);
     assert!(order.is_sorted());
 }
 

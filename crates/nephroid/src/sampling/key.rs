@@ -10,6 +10,8 @@ pub enum Stream {
     CausticPhotons = 3,
     /// Trial photon paths that count how many photons a path stores.
     Pilot = 4,
+    /// Rounding of what a photon map keeps of a photon.
+    Rounding = 5,
 }
 
 /// A 64-bit hash of what identifies a sequence: (seed, iteration, stream, path, …).
