@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use wide::f32x8;
 
 use crate::math::Vec3;
 
@@ -73,27 +74,31 @@ impl Blocks {
     /// is at most `radius_sq`, by increasing place.
     #[inline(always)]
     pub fn scan(&self, start: u32, end: u32, center: Vec3, radius_sq: f32, mut visit: impl FnMut(Hits)) {
-        let (first, last) = (start as usize / LANES, (end as usize).div_ceil(LANES));
-        for (number, block) in (first..last).zip(&self.blocks[first..last]) {
-            let mut dist_sq = [0.0; LANES];
-            for (i, d) in dist_sq.iter_mut().enumerate() {
-                let (x, y, z) = (block.x[i] - center.x, block.y[i] - center.y, block.z[i] - center.z);
-                *d = x * x + y * y + z * z;
-            }
-            let mut mask = 0;
-            for (i, d) in dist_sq.iter().enumerate() {
-                mask |= u32::from(*d <= radius_sq) << i;
-            }
-            let place = (number * LANES) as u32;
-            if place < start {
-                mask &= u32::MAX << (start - place);
-            }
-            if end - place < LANES as u32 {
-                mask &= (1 << (end - place)) - 1;
-            }
+        let mut from = start;
+        while from < end {
+            let (dist_sq, mask, next) = self.block(from, end, center, radius_sq);
             if mask != 0 {
-                visit(Hits { first: place, mask, dist_sq: &dist_sq });
+                visit(Hits { first: next - LANES as u32, mask, dist_sq: &dist_sq });
             }
+            from = next;
         }
+    }
+
+    /// The squared distances of the points in the block of a place, the bits of those from there to
+    /// before `end` that are within the radius, and the first place of the next block.
+    #[inline(always)]
+    pub fn block(&self, start: u32, end: u32, center: Vec3, radius_sq: f32) -> ([f32; LANES], u32, u32) {
+        let number = start / LANES as u32;
+        let block = &self.blocks[number as usize];
+        let away = |coordinates, center| {
+            let d = f32x8::new(coordinates) - f32x8::splat(center);
+            d * d
+        };
+        let dist_sq = away(block.x, center.x) + away(block.y, center.y) + away(block.z, center.z);
+        let mut mask = dist_sq.simd_le(f32x8::splat(radius_sq)).to_bitmask();
+        let place = number * LANES as u32;
+        mask &= u32::MAX << (start - place);
+        mask &= u32::MAX >> (31 - (end - 1 - place).min(31));
+        (dist_sq.to_array(), mask, place + LANES as u32)
     }
 }

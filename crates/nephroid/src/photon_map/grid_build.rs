@@ -1,6 +1,5 @@
 //! How a [`GridTree`] is built: points are sorted by cell, node by node, from the root down.
 
-use pulp::Arch;
 use rayon::prelude::*;
 
 use super::block::Blocks;
@@ -65,7 +64,6 @@ impl GridTree {
             blocks: Blocks::new(len, |place| entries[place].position),
             nodes: part.nodes,
             starts: part.starts,
-            arch: Arch::new(),
         };
         (tree, entries.par_iter().map(|e| e.number).collect())
     }
@@ -137,8 +135,9 @@ impl Part {
             first_child: node.first_child + nodes,
             ..*node
         };
-        self.nodes[number] = moved(&part.nodes[0]);
-        self.nodes.extend(part.nodes[1..].iter().map(moved));
+        let mut all = part.nodes.iter().map(moved);
+        self.nodes[number] = all.next().expect("the first node of a part is its root");
+        self.nodes.extend(all);
         self.starts.extend(part.starts);
         self.cells.extend(part.cells);
     }

@@ -1,7 +1,5 @@
-use pulp::{Arch, WithSimd};
-
 use super::block::{Blocks, Hits, LANES};
-use super::index::{NearestHeap, PhotonIndex};
+use super::index::{NearestList, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
 /// A tree over points whose nodes are grids of up to 64 cells.
@@ -16,7 +14,7 @@ use crate::math::{Bounds, Vec3};
 /// monotonic and a point's cell is found by the same arithmetic as the range of cells.
 ///
 /// The arrangement depends on the positions and the order of the points alone, not on threads.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GridTree {
     pub(super) bounds: Bounds,
     pub(super) covered_area: f32,
@@ -26,8 +24,6 @@ pub struct GridTree {
     /// Where the points of each cell that holds any begin, node by node, and at each node's end where
     /// the last cell's points end.
     pub(super) starts: Vec<u32>,
-    /// Which instructions the processor has.
-    pub(super) arch: Arch,
 }
 
 /// A grid of cells.
@@ -155,7 +151,8 @@ fn finite_bound(radius_sq: f32) -> f32 {
     if radius_sq.is_nan() { -1.0 } else { radius_sq.min(f32::MAX) }
 }
 
-/// The runs of places in the cells of a node that are in `range`, and the inner cells among them, in order.
+/// The runs of places in the cells of a node that are in a range, and the inner cells among them, in order.
+#[derive(Clone, Copy)]
 struct Pieces {
     inside: u64,
     /// Where a run must end: cells that hold points and are not in the range, and inner ones.
@@ -168,6 +165,8 @@ enum Piece {
 }
 
 impl Pieces {
+    const NONE: Self = Self { inside: 0, stops: 0 };
+
     #[inline(always)]
     fn new(node: &Node, range: u64) -> Self {
         Self { inside: node.occupied & range, stops: node.occupied & !range | node.inner }
@@ -205,12 +204,6 @@ impl GridTree {
         self.covered_area
     }
 
-    /// The same tree, searched with the instructions that every processor has: the results are the same bits.
-    #[must_use]
-    pub fn portable(self) -> Self {
-        Self { arch: Arch::Scalar, ..self }
-    }
-
     /// A squared radius that holds some more than k points at the density around a point.
     fn first_radius_sq(&self, center: Vec3, k: usize) -> f32 {
         let Some(mut node) = self.nodes.first() else { return 0.0 };
@@ -227,13 +220,6 @@ impl GridTree {
         let len = self.starts[first + node.occupied.count_ones() as usize] - self.starts[first];
         let ball = FIRST_BALL * k as f32 * area / (std::f32::consts::PI * len as f32);
         ball + node.dist_sq(center)
-    }
-}
-
-impl PartialEq for GridTree {
-    fn eq(&self, other: &Self) -> bool {
-        (self.bounds, self.covered_area) == (other.bounds, other.covered_area)
-            && (&self.blocks, &self.nodes, &self.starts) == (&other.blocks, &other.nodes, &other.starts)
     }
 }
 
@@ -259,11 +245,22 @@ impl PhotonIndex for GridTree {
         self.blocks.memory_bytes() + size_of_val(self.nodes.as_slice()) + size_of_val(self.starts.as_slice())
     }
 
-    #[inline]
-    fn for_each_within(&self, center: Vec3, radius_sq: f32, visit: impl FnMut(u32, f32)) {
+    #[inline(always)]
+    fn for_each_within(&self, center: Vec3, radius_sq: f32, mut visit: impl FnMut(u32, f32)) {
         let radius_sq = finite_bound(radius_sq);
-        if radius_sq >= 0.0 {
-            self.arch.dispatch(Within { tree: self, ball: Ball::new(center, radius_sq), visit });
+        if radius_sq < 0.0 {
+            return;
+        }
+        let Some(mut search) = Within::new(self, Ball::new(center, radius_sq)) else { return };
+        let (mut places, mut dist_sq) = ([0; BATCH], [0.0; BATCH]);
+        loop {
+            let len = search.next(&mut places, &mut dist_sq);
+            for (place, dist_sq) in places.iter().zip(&dist_sq).take(len) {
+                visit(*place, *dist_sq);
+            }
+            if len + LANES <= BATCH {
+                return;
+            }
         }
     }
 
@@ -273,57 +270,90 @@ impl PhotonIndex for GridTree {
         max_radius_sq: f32,
         k: usize,
         measure: impl FnMut(u32, f32) -> Option<f32>,
-        found: &mut NearestHeap,
+        found: &mut NearestList,
     ) {
         found.start(k, finite_bound(max_radius_sq));
         if found.bound_sq() >= 0.0 {
-            self.arch.dispatch(Nearest { tree: self, center, k, measure, found });
+            Nearest { tree: self, center, k, measure, found }.search();
         }
         found.finish();
     }
 }
 
-/// A search by radius.
-struct Within<'a, F> {
+/// Points found at a time: what is done with them then happens in a loop of its own, which keeps its
+/// sums in registers and has nothing else to mind.
+const BATCH: usize = 128;
+
+/// A search by radius, and where it stands.
+struct Within<'a> {
     tree: &'a GridTree,
     ball: Ball,
-    visit: F,
+    /// The node being searched, and what is left of it.
+    number: u32,
+    pieces: Pieces,
+    /// Places that are left of a run.
+    run: (u32, u32),
+    /// Nodes to come back to, and what is left of them.
+    stack: [(u32, Pieces); MAX_LEVELS],
+    depth: usize,
 }
 
-impl<F: FnMut(u32, f32)> WithSimd for Within<'_, F> {
-    type Output = ();
-
+impl<'a> Within<'a> {
+    /// `None` if the ball is outside.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(mut self, _: S) {
-        let Self { tree, ball, ref mut visit } = self;
-        let Some(mut node) = tree.nodes.first().filter(|root| root.meets(&ball)) else { return };
-        let mut pieces = Pieces::new(node, node.cells_in(&ball));
-        // Nodes to come back to; the cell entered last is the lowest inner one no longer inside.
-        let mut stack = [(0u32, 0u64, 0u64); MAX_LEVELS];
-        let (mut depth, mut number) = (0, 0);
+    fn new(tree: &'a GridTree, ball: Ball) -> Option<Self> {
+        let root = tree.nodes.first().filter(|root| root.meets(&ball))?;
+        let (pieces, stack) = (Pieces::new(root, root.cells_in(&ball)), [(0, Pieces::NONE); MAX_LEVELS]);
+        Some(Self { tree, ball, number: 0, pieces, run: (0, 0), stack, depth: 0 })
+    }
+
+    /// Notes down the next points, their places and squared distances; returns how many. At the end of
+    /// the search there is room left for a block.
+    #[inline(never)]
+    fn next(&mut self, places: &mut [u32; BATCH], dist_sq: &mut [f32; BATCH]) -> usize {
+        let (tree, Ball { center, radius_sq, .. }) = (self.tree, self.ball);
+        let (mut pieces, (mut start, mut end)) = (self.pieces, self.run);
+        let mut node = &tree.nodes[self.number as usize];
+        let mut len = 0;
         loop {
-            match pieces.next(node, &tree.starts) {
-                Some(Piece::Run(start, end)) => {
-                    tree.blocks.scan(start, end, ball.center, ball.radius_sq, |hits: Hits| {
-                        hits.for_each(&mut *visit);
-                    });
+            while start < end {
+                if len + LANES > BATCH {
+                    (self.pieces, self.run) = (pieces, (start, end));
+                    return len;
                 }
+                let (found, mask, next) = tree.blocks.block(start, end, center, radius_sq);
+                start = next;
+                if mask == 0 {
+                    continue;
+                }
+                // Each lane is noted down, and the next one in its place if it was no hit: no branches
+                // that could go wrong.
+                for (lane, d) in found.into_iter().enumerate() {
+                    places[len % BATCH] = next - (LANES - lane) as u32;
+                    dist_sq[len % BATCH] = d;
+                    len += (mask >> lane & 1) as usize;
+                }
+            }
+            match pieces.next(node, &tree.starts) {
+                Some(Piece::Run(from, to)) => (start, end) = (from, to),
                 Some(Piece::Inner(cell)) => {
                     let child = node.child(cell);
                     let inside = &tree.nodes[child as usize];
-                    if inside.meets(&ball) {
-                        stack[depth] = (number, pieces.inside, pieces.stops);
-                        depth += 1;
-                        (number, node) = (child, inside);
-                        pieces = Pieces::new(node, node.cells_in(&ball));
+                    if inside.meets(&self.ball) {
+                        self.stack[self.depth] = (self.number, pieces);
+                        self.depth += 1;
+                        (self.number, node) = (child, inside);
+                        pieces = Pieces::new(node, node.cells_in(&self.ball));
                     }
                 }
-                None if depth == 0 => return,
+                None if self.depth == 0 => {
+                    (self.pieces, self.run) = (pieces, (0, 0));
+                    return len;
+                }
                 None => {
-                    depth -= 1;
-                    let (back, inside, stops) = stack[depth];
-                    (number, node) = (back, &tree.nodes[back as usize]);
-                    pieces = Pieces { inside, stops };
+                    self.depth -= 1;
+                    (self.number, pieces) = self.stack[self.depth];
+                    node = &tree.nodes[self.number as usize];
                 }
             }
         }
@@ -336,16 +366,13 @@ struct Nearest<'a, F> {
     center: Vec3,
     k: usize,
     measure: F,
-    found: &'a mut NearestHeap,
+    found: &'a mut NearestList,
 }
 
-impl<F: FnMut(u32, f32) -> Option<f32>> WithSimd for Nearest<'_, F> {
-    type Output = ();
-
+impl<F: FnMut(u32, f32) -> Option<f32>> Nearest<'_, F> {
     /// Looks through a ball that should hold k points, and if it does not through larger ones, less
     /// what was looked through before.
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(mut self, _: S) {
+    fn search(mut self) {
         if self.tree.nodes.is_empty() {
             return;
         }
@@ -363,9 +390,7 @@ impl<F: FnMut(u32, f32) -> Option<f32>> WithSimd for Nearest<'_, F> {
             radius_sq *= (FIRST_BALL * self.k as f32 / count as f32).clamp(1.5, GROWTH);
         }
     }
-}
 
-impl<F: FnMut(u32, f32) -> Option<f32>> Nearest<'_, F> {
     /// Offers the points beyond one squared distance and up to another, from near nodes to far ones.
     #[inline(always)]
     fn shell(&mut self, before_sq: f32, radius_sq: f32) {
@@ -384,15 +409,25 @@ impl<F: FnMut(u32, f32) -> Option<f32>> Nearest<'_, F> {
             while let Some(piece) = pieces.next(node, &tree.starts) {
                 match piece {
                     Piece::Run(start, end) => {
-                        tree.blocks.scan(start, end, center, radius_sq, |hits: Hits| {
-                            hits.for_each(|place, dist_sq| {
-                                if dist_sq > before_sq
-                                    && let Some(d) = measure(place, dist_sq)
-                                {
-                                    found.offer(place, d);
-                                }
-                            });
-                        });
+                        tree.blocks.scan(
+                            start,
+                            end,
+                            center,
+                            radius_sq,
+                            #[inline(always)]
+                            |hits: Hits| {
+                                hits.for_each(
+                                    #[inline(always)]
+                                    |place, dist_sq| {
+                                        if dist_sq > before_sq
+                                            && let Some(d) = measure(place, dist_sq)
+                                        {
+                                            found.offer(place, d);
+                                        }
+                                    },
+                                );
+                            },
+                        );
                     }
                     Piece::Inner(cell) => {
                         let child = node.child(cell);

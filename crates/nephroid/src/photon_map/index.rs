@@ -43,7 +43,7 @@ pub trait PhotonIndex: Sized + Sync {
         max_radius_sq: f32,
         k: usize,
         measure: impl FnMut(u32, f32) -> Option<f32>,
-        found: &mut NearestHeap,
+        found: &mut NearestList,
     );
 }
 
@@ -60,7 +60,7 @@ pub struct Neighbor {
 /// are struck off the list: cheaper than a heap, which has each of them in its place at any time. Make
 /// one per thread and use it for all searches: it keeps its memory.
 #[derive(Clone, Debug, Default)]
-pub struct NearestHeap {
+pub struct NearestList {
     /// Distance in the upper half, place in the lower: floats that are not negative are ordered like
     /// their bits, so one comparison of integers ranks by distance, then place.
     keys: Vec<u64>,
@@ -73,7 +73,7 @@ pub struct NearestHeap {
     waiting: Vec<(f32, u32)>,
 }
 
-impl NearestHeap {
+impl NearestList {
     /// An empty one.
     pub fn new() -> Self {
         Self::default()
@@ -116,7 +116,7 @@ impl NearestHeap {
     }
 
     /// Offers a point.
-    #[inline]
+    #[inline(always)]
     pub(super) fn offer(&mut self, place: u32, dist_sq: f32) {
         if dist_sq <= self.bound_sq {
             self.keys.push(pack(place, dist_sq));

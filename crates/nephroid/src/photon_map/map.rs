@@ -172,6 +172,30 @@ mod tests {
     }
 
     #[test]
+    fn memory_has_a_bound_for_any_cloud() {
+        let mut rng = Rng::new(4);
+        let mut cloud = |place: &dyn Fn(usize, Vec3) -> Vec3| -> Vec<Photon> {
+            (0..20_000).map(|i| photon_at(place(i, rng.point()), Vec3::Z)).collect()
+        };
+        let clouds = [
+            ("a volume", cloud(&|_, p| p)),
+            (
+                "a plain a thousand times the room",
+                cloud(&|i, p| if i % 2 == 0 { p } else { p.with_z(0.0) * 1e3 }),
+            ),
+            ("one far outlier", cloud(&|i, p| if i == 0 { Vec3::splat(1e6) } else { p.with_z(0.0) })),
+            ("one place", cloud(&|_, _| Vec3::ONE)),
+            ("a line", cloud(&|_, p| Vec3::splat(p.x))),
+            ("clusters in clusters", cloud(&|_, p| p * crate::math::real::exp(-40.0 * p.x))),
+            ("pairs", cloud(&|i, p| (Vec3::splat((i / 2) as f32 * 0.618) % 1.0) + p * 1e-6)),
+        ];
+        for (what, photons) in clouds {
+            let per_photon = map(photons).memory_bytes() as f32 / 2e4;
+            assert!(per_photon <= 40.0, "{what}: {per_photon}");
+        }
+    }
+
+    #[test]
     fn covered_area_follows_the_surface_and_the_scale() {
         for (tilted, least, most) in [(false, 0.97, 1.03), (true, 0.97, 1.7)] {
             let area = square(20_000, 1.0, tilted).index().covered_area();

@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::integrator::Components;
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
-use crate::photon_map::{Bandwidth, Kernel, NearestHeap, PhotonMap, Query, gather};
+use crate::photon_map::{Bandwidth, Kernel, NearestList, PhotonMap, Query, gather};
 use crate::sampling::{Key, Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -28,7 +28,7 @@ const GUIDE_PHOTONS: u32 = 48;
 const MAX_NEAR_SURFACES: u32 = 8;
 
 /// Memory that estimates lend one another.
-pub(crate) type Scratch = NearestHeap;
+pub(crate) type Scratch = NearestList;
 
 /// What the camera pass of one iteration looks up.
 pub(crate) struct PhotonMapper<'a> {
