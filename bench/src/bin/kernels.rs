@@ -17,7 +17,7 @@ use nephroid::light::{Light, LightKind};
 use nephroid::material::{Bsdf, Material, Transport};
 use nephroid::math::{Ray, Transform, Vec2, Vec3, warp};
 use nephroid::observer::Silent;
-use nephroid::photon_map::{Bandwidth, Kernel, NearestHeap, PhotonMap, Photons, Query, gather};
+use nephroid::photon_map::{Bandwidth, Kernel, NearestList, PhotonMap, Photons, Query, gather};
 use nephroid::scene::Scene;
 use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::Textures;
@@ -196,7 +196,7 @@ fn gathers(bandwidth: impl FnOnce(&PhotonMap) -> Bandwidth) -> usize {
         max_photon_depth: None,
     };
     let queries: Vec<Query> = others.as_slice().iter().take(QUERIES).map(query).collect();
-    let mut heap = NearestHeap::new();
+    let mut heap = NearestList::new();
     let sum = measured(|| {
         let mut sum = Rgb::BLACK;
         for query in &queries {

@@ -12,7 +12,7 @@ use std::time::Instant;
 use nephroid::color::Rgb;
 use nephroid::math::{Vec2, Vec3, warp};
 use nephroid::photon_map::{
-    Bandwidth, KdTree, Kernel, NearestHeap, Photon, PhotonIndex, PhotonMap, Photons, Query, gather,
+    Bandwidth, GridTree, Kernel, NearestList, Photon, PhotonIndex, PhotonMap, Photons, Query, gather,
 };
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -50,7 +50,7 @@ fn main() {
     }
 }
 
-fn search(tree: &KdTree, queries: &[Query], radius: f32, max_radius: f32) {
+fn search(tree: &GridTree, queries: &[Query], radius: f32, max_radius: f32) {
     report("within a radius, ~20 points", queries, |query, _| {
         let (mut sum, mut count) = (0.0, 0);
         tree.for_each_within(query.position, radius * radius, |_, d| {
@@ -76,7 +76,7 @@ fn flux(
     query: &Query,
     kernel: Kernel,
     bandwidth: Bandwidth,
-    heap: &mut NearestHeap,
+    heap: &mut NearestList,
 ) -> (u32, f32) {
     let mut sum = Rgb::BLACK;
     let gathered = gather(map, query, kernel, bandwidth, heap, |photon, weight| {
@@ -88,8 +88,8 @@ fn flux(
     (gathered.count, sum.r)
 }
 
-fn report(what: &str, queries: &[Query], run: impl Fn(&Query, &mut NearestHeap) -> (u32, f32)) {
-    let mut heap = NearestHeap::new();
+fn report(what: &str, queries: &[Query], run: impl Fn(&Query, &mut NearestList) -> (u32, f32)) {
+    let mut heap = NearestList::new();
     let (mut seconds, mut found) = (0.0, 0u64);
     for part in queries.chunks(1024) {
         let mut best = f64::INFINITY;

@@ -5,7 +5,7 @@ use crate::integrator::{
     AovProbe, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PictureSums,
 };
 use crate::observer::{Observer, Phase, Work};
-use crate::photon_map::NearestHeap;
+use crate::photon_map::NearestList;
 use crate::transport::{CameraPass, Exposure, Ledger, PhotonPlan, camera_pass};
 use crate::world::World;
 
@@ -234,11 +234,11 @@ fn expose(
             world,
             pass,
             observer,
-            NearestHeap::new,
+            NearestList::new,
             join,
-            |mut sample, weight, heap, (picture, aovs): &mut (PixelSum, AovSum), total| {
+            |mut sample, weight, neighbors, (picture, aovs): &mut (PixelSum, AovSum), total| {
                 let mut probe = AovProbe::new(&sample);
-                let light = estimator.radiance(&mut sample, heap, &mut probe);
+                let light = estimator.radiance(&mut sample, neighbors, &mut probe);
                 total.add(&light);
                 picture.add(light.total(), weight);
                 aovs.add(&probe.finish(&light), weight);
@@ -249,10 +249,10 @@ fn expose(
         world,
         pass,
         observer,
-        NearestHeap::new,
+        NearestList::new,
         join,
-        |mut sample, weight, heap, picture: &mut PixelSum, total| {
-            let light = estimator.radiance(&mut sample, heap, &mut ());
+        |mut sample, weight, neighbors, picture: &mut PixelSum, total| {
+            let light = estimator.radiance(&mut sample, neighbors, &mut ());
             total.add(&light);
             picture.add(light.total(), weight);
         },

@@ -6,7 +6,7 @@ use super::{Components, Estimator, LightPart, Met, Probe};
 use crate::color::Rgb;
 use crate::material::Transport;
 use crate::math::Vec3;
-use crate::photon_map::NearestHeap;
+use crate::photon_map::NearestList;
 use crate::sampling::power_heuristic;
 use crate::transport::{DirectLights, Partner, PixelSample, light_pdf, sample_lights, sky_by_bsdf, survival};
 use crate::world::{World, leave};
@@ -39,7 +39,7 @@ impl Estimator for PathTracer<'_> {
     fn radiance<P: Probe>(
         &self,
         sample: &mut PixelSample,
-        _heap: &mut NearestHeap,
+        _heap: &mut NearestList,
         probe: &mut P,
     ) -> Components {
         radiance(self.world, self.config, sample, probe)

@@ -5,7 +5,7 @@ use crate::color::Rgb;
 use crate::film::{Aov, AovSample};
 use crate::material::Bsdf;
 use crate::math::Vec3;
-use crate::photon_map::{Gathered, NearestHeap, Photon};
+use crate::photon_map::{Gathered, NearestList, Photon};
 use crate::transport::PixelSample;
 use crate::world::Hit;
 
@@ -95,7 +95,7 @@ pub(crate) trait Estimator: Sync {
     fn radiance<P: Probe>(
         &self,
         sample: &mut PixelSample,
-        heap: &mut NearestHeap,
+        neighbors: &mut NearestList,
         probe: &mut P,
     ) -> Components;
 }

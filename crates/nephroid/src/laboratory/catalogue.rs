@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::photon_map::{KdTree, Photon, PhotonIndex, PhotonMap, Photons};
+use crate::photon_map::{Photon, PhotonMap, Photons};
 use crate::transport::RecordedPhoton;
 
 /// A map with the records of its photons.
@@ -25,7 +25,7 @@ impl Catalogue {
     /// Builds the map of the photons that `paths` paths stored.
     pub fn build(records: Vec<RecordedPhoton>, paths: u64) -> (PhotonMap, Self) {
         let photons = Photons::new(paths, records.iter().map(|r| r.photon).collect());
-        let (map, order) = build_ordered(photons);
+        let (map, order) = PhotonMap::build_ordered(photons);
         let mut keys: Vec<_> = (0..).zip(order).map(|(place, n)| (key(&map.photon(place)), n)).collect();
         keys.par_sort_unstable();
         (map, Self { records, keys })
@@ -37,11 +37,4 @@ impl Catalogue {
         let first = self.keys.partition_point(|(key, _)| *key < wanted);
         self.keys.get(first).filter(|(key, _)| *key == wanted).map(|(_, n)| &self.records[*n as usize])
     }
-}
-
-/// A map, and for each place in it the number of the photon there.
-fn build_ordered(photons: Photons) -> (PhotonMap, Vec<u32>) {
-    let all = photons.as_slice();
-    let (_, order) = KdTree::build(all.len(), |i| all[i].position);
-    (PhotonMap::build(photons), order)
 }

@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
 use crate::integrator::{Components, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig};
 use crate::observer::Observer;
-use crate::photon_map::NearestHeap;
+use crate::photon_map::NearestList;
 use crate::session::{RenderSettings, STEP_SAMPLES};
 use crate::transport::{Ledger, PhotonPlan, PixelSample, pixel_key};
 use crate::world::World;
@@ -140,12 +140,13 @@ impl<'w> Inspector<'w> {
     fn take(&mut self, estimator: &impl Estimator, catalogues: Option<&[Catalogue; 3]>, samples: u32) {
         let filter = FilterSampler::new(self.world.scene().film.filter);
         let key = pixel_key(self.settings.seed, self.iteration, self.pixel);
-        let (mut heap, mut sum, mut parts) = (NearestHeap::new(), PixelSum::default(), AovSum::default());
+        let (mut neighbors, mut sum, mut parts) =
+            (NearestList::new(), PixelSum::default(), AovSum::default());
         for index in self.samples..self.samples + samples {
             let (mut sample, weight) = PixelSample::new(self.world, &filter, key, self.pixel, index);
             let (origin, direction) = (sample.ray.origin, sample.ray.direction);
             let mut probe = InspectProbe::new(catalogues);
-            let light = estimator.radiance(&mut sample, &mut heap, &mut probe);
+            let light = estimator.radiance(&mut sample, &mut neighbors, &mut probe);
             sum.add(light.total(), weight);
             parts.add(&AovSample::of_light(light.direct, light.global, light.caustic, light.emitted), weight);
             let (surfaces, rays, look_ups) = Default::default();

@@ -1,4 +1,4 @@
-use super::index::{NearestHeap, PhotonIndex};
+use super::index::{NearestList, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
 /// An index that looks at every point: the oracle of the others, for tests and tiny maps.
@@ -44,7 +44,7 @@ impl PhotonIndex for BruteForce {
         max_radius_sq: f32,
         k: usize,
         mut measure: impl FnMut(u32, f32) -> Option<f32>,
-        found: &mut NearestHeap,
+        found: &mut NearestList,
     ) {
         found.start(usize::MAX, max_radius_sq);
         self.for_each_within(center, max_radius_sq, |place, dist_sq| {

@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use super::index::{NearestHeap, PhotonIndex};
+use super::index::{NearestList, PhotonIndex};
 use super::kernel::Kernel;
 use super::map::PhotonMap;
 use super::photon::Photon;
@@ -95,7 +95,7 @@ pub fn gather<I: PhotonIndex>(
     query: &Query,
     kernel: Kernel,
     bandwidth: Bandwidth,
-    scratch: &mut NearestHeap,
+    scratch: &mut NearestList,
     mut add: impl FnMut(&Photon, f32),
 ) -> Gathered {
     let (k, max_radius) = match bandwidth {
@@ -104,8 +104,14 @@ pub fn gather<I: PhotonIndex>(
             return gather_within(map, query, kernel, radius, add);
         }
     };
-    let measure = |place, dist_sq| distance_sq(map, query, place, dist_sq);
-    map.index().nearest(query.position, max_radius * max_radius, k, measure, scratch);
+    map.index().nearest(
+        query.position,
+        max_radius * max_radius,
+        k,
+        #[inline(always)]
+        |place, dist_sq| distance_sq(map, query, place, dist_sq),
+        scratch,
+    );
     let found = before_a_gap(scratch);
     if found < k.min(ENOUGH) {
         return gather_within(map, query, kernel, max_radius, add);
@@ -125,7 +131,7 @@ pub fn gather<I: PhotonIndex>(
 /// photon in it. There the surface ends, and what follows lies on another that happens to look the same
 /// way, such as the next ball. In uniform light i photons are followed by a disc a times as large, empty
 /// but for them, with the chance a^-i; a gap is what has a chance below one in 4⁸ = 65 536.
-fn before_a_gap(found: &NearestHeap) -> usize {
+fn before_a_gap(found: &NearestList) -> usize {
     /// The ratio of the areas that makes a gap after so many photons, at most the last.
     const GAPS: [f32; 9] = [f32::INFINITY, f32::INFINITY, f32::INFINITY, 40.4, 16.0, 9.2, 6.4, 4.9, 4.0];
     let dist_sq = |i: usize| found.get(i).map_or(0.0, |n| n.dist_sq);
@@ -143,14 +149,19 @@ fn gather_within<I: PhotonIndex>(
     let mut count = 0;
     if let Some(spread) = Spread::new(kernel, radius) {
         let radius_sq = radius * radius;
-        map.index().for_each_within(query.position, radius_sq, |place, dist_sq| {
-            if let Some(d) = distance_sq(map, query, place, dist_sq)
-                && d <= radius_sq
-            {
-                add(&map.photon(place), spread.weight(d));
-                count += 1;
-            }
-        });
+        map.index().for_each_within(
+            query.position,
+            radius_sq,
+            #[inline(always)]
+            |place, dist_sq| {
+                if let Some(d) = distance_sq(map, query, place, dist_sq)
+                    && d <= radius_sq
+                {
+                    add(&map.photon(place), spread.weight(d));
+                    count += 1;
+                }
+            },
+        );
     }
     Gathered { radius, count }
 }
@@ -176,17 +187,23 @@ impl Spread {
     }
 
     /// Weight in 1/m² at a squared distance within the radius, or at it up to rounding.
-    #[inline]
+    #[inline(always)]
     fn weight(&self, dist_sq: f32) -> f32 {
         self.per_area * self.kernel.shape((dist_sq * self.per_radius_sq).min(1.0))
     }
 }
 
 /// The squared distance of the metric in [`gather`]; `None` for a photon that does not count.
-#[inline]
+#[inline(always)]
 fn distance_sq<I: PhotonIndex>(map: &PhotonMap<I>, query: &Query, place: u32, dist_sq: f32) -> Option<f32> {
-    let (normal, depth) = map.normal_and_depth(place);
-    if normal.dot(query.normal) < MIN_NORMAL_COSINE || query.max_photon_depth.is_some_and(|max| depth > max) {
+    let payload = map.payload(place);
+    if query.max_photon_depth.is_some_and(|max| payload.depth() > max) {
+        return None;
+    }
+    // The cosine, without the root and division that would make the normal a unit vector.
+    let normal = payload.scaled_normal();
+    let cosine = normal.dot(query.normal);
+    if cosine <= 0.0 || cosine * cosine < MIN_NORMAL_COSINE * MIN_NORMAL_COSINE * normal.length_squared() {
         return None;
     }
     let height = (map.index().position(place) - query.position).dot(query.normal) * (1.0 / MAX_THICKNESS);

@@ -43,7 +43,7 @@ pub trait PhotonIndex: Sized + Sync {
         max_radius_sq: f32,
         k: usize,
         measure: impl FnMut(u32, f32) -> Option<f32>,
-        found: &mut NearestHeap,
+        found: &mut NearestList,
     );
 }
 
@@ -56,20 +56,24 @@ pub struct Neighbor {
     pub dist_sq: f32,
 }
 
-/// The nearest points found so far: a list up to k of them, from then on a heap with the farthest on
-/// top, which the next nearer one replaces (Jensen 2001, *Realistic Image Synthesis Using Photon
-/// Mapping*). Make one per thread and use it for all searches: it keeps its memory.
+/// The nearest points found so far. Points are only noted down, and now and then all but the nearest k
+/// are struck off the list: cheaper than a heap, which has each of them in its place at any time. Make
+/// one per thread and use it for all searches: it keeps its memory.
 #[derive(Clone, Debug, Default)]
-pub struct NearestHeap {
+pub struct NearestList {
     /// Distance in the upper half, place in the lower: floats that are not negative are ordered like
     /// their bits, so one comparison of integers ranks by distance, then place.
     keys: Vec<u64>,
     k: usize,
+    /// At so many all but k are struck off.
+    full: usize,
     /// No point farther than this can enter.
     bound_sq: f32,
+    /// Nodes that a search has yet to visit, with their squared distances.
+    waiting: Vec<(f32, u32)>,
 }
 
-impl NearestHeap {
+impl NearestList {
     /// An empty one.
     pub fn new() -> Self {
         Self::default()
@@ -101,6 +105,7 @@ impl NearestHeap {
     pub(super) fn start(&mut self, k: usize, max_radius_sq: f32) {
         self.keys.clear();
         self.k = k;
+        self.full = k.saturating_mul(3).saturating_add(64);
         self.bound_sq = if k == 0 { -1.0 } else { max_radius_sq };
     }
 
@@ -110,24 +115,26 @@ impl NearestHeap {
         self.bound_sq
     }
 
-    /// Offers a point at most [`Self::bound_sq`] away.
-    #[inline]
+    /// Offers a point.
+    #[inline(always)]
     pub(super) fn offer(&mut self, place: u32, dist_sq: f32) {
-        let key = pack(place, dist_sq);
-        if self.keys.len() < self.k {
-            self.keys.push(key);
-            if self.keys.len() == self.k {
-                self.make_heap();
-                self.bound_sq = unpack(self.keys[0]).dist_sq;
+        if dist_sq <= self.bound_sq {
+            self.keys.push(pack(place, dist_sq));
+            if self.keys.len() == self.full {
+                self.strike_off();
+                self.bound_sq = self.keys.last().map_or(self.bound_sq, |&key| unpack(key).dist_sq);
             }
-        } else if key < self.keys[0] {
-            sift_down(&mut self.keys, 0, key);
-            self.bound_sq = unpack(self.keys[0]).dist_sq;
         }
+    }
+
+    /// How many of the points noted down are within a squared distance.
+    pub(super) fn count_within(&self, dist_sq: f32) -> usize {
+        self.keys.iter().filter(|&&key| unpack(key).dist_sq <= dist_sq).count()
     }
 
     /// Ends a search.
     pub(super) fn finish(&mut self) {
+        self.strike_off();
         self.keys.sort_unstable();
     }
 
@@ -136,32 +143,26 @@ impl NearestHeap {
         self.keys.truncate(k);
     }
 
-    fn make_heap(&mut self) {
-        for i in (0..self.keys.len() / 2).rev() {
-            let key = self.keys[i];
-            sift_down(&mut self.keys, i, key);
-        }
+    /// The list of nodes to visit, empty; to be given back.
+    pub(super) fn take_waiting(&mut self) -> Vec<(f32, u32)> {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        waiting.clear();
+        waiting
     }
-}
 
-/// Puts `key` into the hole at `hole`, moving larger children up.
-#[inline]
-fn sift_down(keys: &mut [u64], mut hole: usize, key: u64) {
-    loop {
-        let mut child = 2 * hole + 1;
-        if child >= keys.len() {
-            break;
-        }
-        if child + 1 < keys.len() {
-            child += usize::from(keys[child + 1] > keys[child]);
-        }
-        if keys[child] <= key {
-            break;
-        }
-        keys[hole] = keys[child];
-        hole = child;
+    /// See [`Self::take_waiting`].
+    pub(super) fn give_waiting(&mut self, waiting: Vec<(f32, u32)>) {
+        self.waiting = waiting;
     }
-    keys[hole] = key;
+
+    /// Keeps the nearest k, of which the last is the farthest.
+    #[cold]
+    fn strike_off(&mut self) {
+        if self.keys.len() > self.k {
+            self.keys.select_nth_unstable(self.k - 1);
+            self.keys.truncate(self.k);
+        }
+    }
 }
 
 #[inline]

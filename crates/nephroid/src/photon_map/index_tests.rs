@@ -1,10 +1,10 @@
-//! The k-d tree against brute force.
+//! The tree of grids against brute force.
 
 use super::testing::Rng;
-use super::{BruteForce, KdTree, NearestHeap, PhotonIndex};
+use super::{BruteForce, GridTree, NearestList, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
-/// Point sets that have broken k-d trees.
+/// Point sets that have broken trees.
 fn clouds() -> Vec<(&'static str, Vec<Vec3>)> {
     let mut rng = Rng::new(1);
     let mut random = |n: usize| -> Vec<Vec3> { (0..n).map(|_| rng.point()).collect() };
@@ -32,8 +32,8 @@ fn clouds() -> Vec<(&'static str, Vec<Vec3>)> {
 }
 
 /// A tree and the oracle over the same points in the order of the tree.
-fn tree_and_oracle(points: &[Vec3]) -> (KdTree, BruteForce) {
-    let (tree, order) = KdTree::build(points.len(), |i| points[i]);
+fn tree_and_oracle(points: &[Vec3]) -> (GridTree, BruteForce) {
+    let (tree, order) = GridTree::build(points.len(), |i| points[i]);
     let mut sorted = order.clone();
     sorted.sort_unstable();
     assert!((0u32..).zip(&sorted).all(|(i, &j)| i == j) && order.len() == points.len());
@@ -80,7 +80,7 @@ fn radius_queries_equal_brute_force_in_order_and_bits() {
 
 #[test]
 fn nearest_points_equal_brute_force_in_order_and_bits() {
-    let (mut ours, mut theirs) = (NearestHeap::new(), NearestHeap::new());
+    let (mut ours, mut theirs) = (NearestList::new(), NearestList::new());
     for (name, points) in clouds() {
         let (tree, oracle) = tree_and_oracle(&points);
         for center in queries(&points) {
@@ -106,7 +106,7 @@ fn nearest_points_equal_brute_force_in_order_and_bits() {
 #[test]
 fn found_points_are_sorted_by_distance_then_place() {
     let (tree, _) = tree_and_oracle(&clouds()[11].1);
-    let mut found = NearestHeap::new();
+    let mut found = NearestList::new();
     tree.nearest(Vec3::splat(0.5), f32::INFINITY, 300, |_, d| Some(d), &mut found);
     assert_eq!(found.len(), 300);
     let keys: Vec<_> = found.iter().map(|n| (n.dist_sq, n.place)).collect();
@@ -123,7 +123,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     let points: Vec<_> = (0..60_000).map(|_| (rng.point() * 50.0).floor()).collect();
     let built = [1, 2, 7].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| KdTree::build(points.len(), |i| points[i]))
+        pool.install(|| GridTree::build(points.len(), |i| points[i]))
     });
     assert!(built[0] == built[1] && built[0] == built[2]);
 }
@@ -131,7 +131,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
 #[test]
 fn equal_points_keep_the_order_of_their_numbers() {
     // So the tree does not depend on how the standard library selects, either.
-    let (_, order) = KdTree::build(5000, |_| Vec3::ONE);
+    let (_, order) = GridTree::build(5000, |_| Vec3::ONE);
     assert!(order.is_sorted());
 }
 
@@ -141,7 +141,7 @@ fn a_search_visits_a_small_part_of_a_large_set() {
     let points: Vec<_> = (0..100_000).map(|_| rng.point().with_z(0.0)).collect();
     let (tree, _) = tree_and_oracle(&points);
     let mut measured = 0;
-    let mut found = NearestHeap::new();
+    let mut found = NearestList::new();
     tree.nearest(
         Vec3::new(0.4, 0.6, 0.0),
         f32::INFINITY,
@@ -153,4 +153,28 @@ fn a_search_visits_a_small_part_of_a_large_set() {
         &mut found,
     );
     assert!(found.len() == 50 && measured < 400, "{measured}");
+}
+
+#[test]
+fn a_crowd_near_by_is_not_looked_through() {
+    // 100 000 points crowd on a ten-thousandth of the area of which 10 000 have the rest; the query lies among
+    // the latter, a little outside the crowd.
+    let mut rng = Rng::new(5);
+    let place =
+        |i: usize, p: Vec3| if i.is_multiple_of(11) { p.with_z(0.0) } else { (p * 0.01 + 0.5).with_z(0.0) };
+    let points: Vec<_> = (0..110_000).map(|i| place(i, rng.point())).collect();
+    let (tree, oracle) = tree_and_oracle(&points);
+    let (mut ours, mut theirs) = (NearestList::new(), NearestList::new());
+    for x in [0.45, 0.48, 0.495, 0.499, 0.505] {
+        let center = Vec3::new(x, 0.505, 0.0);
+        let mut measured = 0;
+        let count = |_, d| {
+            measured += 1;
+            Some(d)
+        };
+        tree.nearest(center, f32::INFINITY, 50, count, &mut ours);
+        oracle.nearest(center, f32::INFINITY, 50, |_, d| Some(d), &mut theirs);
+        assert!(ours.iter().eq(theirs.iter()));
+        assert!(measured < 4000, "{x}: {measured}");
+    }
 }

@@ -1,12 +1,15 @@
 //! Photons on surfaces: their map, the search for the nearest ones, kernels, and the geometry of the
 //! radiance estimate. Knows neither materials nor how photons come about.
 
+mod block;
 mod brute_force;
 mod estimate;
+mod grid_build;
+mod grid_tree;
 mod index;
-mod kd_tree;
 mod kernel;
 mod map;
+mod payload;
 mod photon;
 
 #[cfg(test)]
@@ -18,8 +21,8 @@ mod testing;
 
 pub use brute_force::BruteForce;
 pub use estimate::{Bandwidth, Gathered, Query, gather};
-pub use index::{NearestHeap, Neighbor, PhotonIndex};
-pub use kd_tree::KdTree;
+pub use grid_tree::GridTree;
+pub use index::{NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;
 pub use map::PhotonMap;
 pub use photon::{Photon, Photons};

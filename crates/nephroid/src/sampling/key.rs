@@ -12,6 +12,8 @@ pub enum Stream {
     Pilot = 4,
     /// Whether a ray meets a masked surface.
     Masks = 5,
+    /// Rounding of what a photon map keeps of a photon.
+    Rounding = 6,
 }
 
 /// A 64-bit hash of what identifies a sequence: (seed, iteration, stream, path, …).

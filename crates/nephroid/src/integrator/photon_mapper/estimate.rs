@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
-use crate::photon_map::{Bandwidth, NearestHeap, Query, gather};
+use crate::photon_map::{Bandwidth, NearestList, Query, gather};
 use crate::sampling::{Key, Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -27,7 +27,7 @@ const MAX_NEAR_SURFACES: u32 = 8;
 /// What an estimate works with.
 struct Tools<'t, P> {
     /// Memory that look-ups lend one another.
-    heap: &'t mut NearestHeap,
+    neighbors: &'t mut NearestList,
     probe: &'t mut P,
 }
 
@@ -215,7 +215,7 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.heap);
+            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.neighbors);
             let first = u64::from(sample.index / self.stride) * u64::from(rays);
             let found: Rgb = (first..first + u64::from(rays))
                 .map(|ray| {
@@ -306,8 +306,8 @@ impl<'a> PhotonMapper<'a> {
             max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
         };
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
-        let Tools { heap, probe } = tools;
-        let gathered = gather(map, &query, self.config.kernel, bandwidth, heap, |photon, weight| {
+        let Tools { neighbors, probe } = tools;
+        let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
             let radiance = f * photon.power * weight;
             *(if photon.depth == 1 { &mut direct } else { &mut other }) += radiance;
@@ -379,12 +379,12 @@ impl Estimator for PhotonMapper<'_> {
     fn radiance<P: Probe>(
         &self,
         sample: &mut PixelSample,
-        heap: &mut NearestHeap,
+        neighbors: &mut NearestList,
         probe: &mut P,
     ) -> Components {
         let mut out = Components::default();
         let ray = sample.ray;
-        self.trace(ray, Rgb::WHITE, 1, 1, sample, &mut Tools { heap, probe }, &mut out);
+        self.trace(ray, Rgb::WHITE, 1, 1, sample, &mut Tools { neighbors, probe }, &mut out);
         out
     }
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::guide::{Facing, Guide};
 use crate::math::Vec3;
-use crate::photon_map::{Bandwidth, KdTree, Kernel, NearestHeap, PhotonIndex, PhotonMap, Query, gather};
+use crate::photon_map::{Bandwidth, GridTree, Kernel, NearestList, PhotonIndex, PhotonMap, Query, gather};
 
 /// One guide is made for so many photons of the map, at one of them …
 const PHOTONS_PER_GUIDE: usize = 64;
@@ -22,7 +22,7 @@ const MIN_NORMAL_COSINE: f32 = 0.95;
 /// bias; near its photon, on a surface of about the same normal, it also follows the light.
 #[derive(Debug)]
 pub(super) struct Guides {
-    index: KdTree,
+    index: GridTree,
     /// By place in the index, like the normals.
     guides: Vec<Guide>,
     normals: Vec<Vec3>,
@@ -39,12 +39,12 @@ impl Guides {
     pub fn new(map: &PhotonMap) -> Self {
         let step = PHOTONS_PER_GUIDE.max(map.len().div_ceil(MAX_GUIDES));
         let photons: Vec<_> = (0..map.len()).step_by(step).map(|place| map.photon(place as u32)).collect();
-        let (index, order) = KdTree::build(photons.len(), |i| photons[i].position);
+        let (index, order) = GridTree::build(photons.len(), |i| photons[i].position);
         let normals: Vec<Vec3> = order.iter().map(|&i| photons[i as usize].normal).collect();
         let max_radius = map.default_max_radius(GUIDE_PHOTONS);
         let guides = (0..photons.len() as u32)
             .into_par_iter()
-            .map_init(NearestHeap::new, |scratch, place| {
+            .map_init(NearestList::new, |scratch, place| {
                 guide(map, index.position(place), normals[place as usize], max_radius, scratch)
             })
             .collect();
@@ -52,7 +52,7 @@ impl Guides {
     }
 
     /// The nearest guide for a point of a surface; `None` where no photon is near.
-    pub fn at(&self, position: Vec3, normal: Vec3, scratch: &mut NearestHeap) -> Option<Facing<'_>> {
+    pub fn at(&self, position: Vec3, normal: Vec3, scratch: &mut NearestList) -> Option<Facing<'_>> {
         let alike = |place: u32, dist_sq| {
             (self.normals[place as usize].dot(normal) >= MIN_NORMAL_COSINE).then_some(dist_sq)
         };
@@ -62,7 +62,7 @@ impl Guides {
 }
 
 /// The guide of the photons about a point.
-fn guide(map: &PhotonMap, position: Vec3, normal: Vec3, max_radius: f32, scratch: &mut NearestHeap) -> Guide {
+fn guide(map: &PhotonMap, position: Vec3, normal: Vec3, max_radius: f32, scratch: &mut NearestList) -> Guide {
     let mut guide = Guide::new(normal);
     let query = Query { position, normal, max_photon_depth: None };
     let bandwidth = Bandwidth::Nearest { k: GUIDE_PHOTONS, max_radius };
@@ -98,7 +98,7 @@ mod tests {
             }
         });
         let guides = Guides::new(&PhotonMap::build(Photons::new(1, photons.collect())));
-        let mut scratch = NearestHeap::new();
+        let mut scratch = NearestList::new();
         for normal in [Vec3::Z, -Vec3::Z] {
             let guide = guides.at(Vec3::new(0.5, 0.5, 0.0), normal, &mut scratch).unwrap();
             let (lit, dark) = (normal + Vec3::X * normal.z, normal - Vec3::X * normal.z);
