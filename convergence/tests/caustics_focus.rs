@@ -35,7 +35,9 @@ fn silhouette(world: &World) -> f64 {
 
 /// Caustic photons that land on the only surface that is not specular, of [`PATHS`].
 fn caught(world: &World) -> u64 {
-    let method = Method::PhotonMapper(map_view(Show::Caustic, PATHS));
+    // Sent everywhere, so that their number is their share of the light.
+    let config = PhotonMapperConfig { aim: false, ..map_view(Show::Caustic, PATHS) };
+    let method = Method::PhotonMapper(config);
     let map = session(world, method, 1, 1).statistics().caustic;
     assert_eq!(map.paths, PATHS);
     map.photons

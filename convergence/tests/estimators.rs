@@ -50,7 +50,8 @@ fn scene() -> World {
 /// Estimates are exact in the mean: of k − 1 neighbours because the k-th photon only sets the radius
 /// (E8), r ≤ .1 being at twice what holds k, and of a fixed radius anyway.
 fn irradiance(world: &World, kernel: Kernel, radius: Option<f32>) -> MeanTest {
-    let config = map_view(Show::Direct, 150_000);
+    // Sent everywhere, so that their number is their share of the light.
+    let config = PhotonMapperConfig { aim: false, ..map_view(Show::Direct, 150_000) };
     let config = PhotonMapperConfig { kernel, radius, max_radius: Some(0.1), neighbours: 20, ..config };
     let power: f64 = world.lights().map(|(_, power)| f64::from(power.mean())).sum();
     let render = |seed| {
@@ -101,7 +102,8 @@ fn the_kernel_of_1996_is_too_dark_by_as_much_as_is_known() {
 fn photons_of_parallel_light_are_uniform() {
     let world = scene();
     let power: f64 = world.lights().map(|(_, power)| f64::from(power.mean())).sum();
-    let session = session(&world, Method::PhotonMapper(map_view(Show::Direct, 400_000)), 1, 11);
+    let config = PhotonMapperConfig { aim: false, ..map_view(Show::Direct, 400_000) };
+    let session = session(&world, Method::PhotonMapper(config), 1, 11);
     let map = session.statistics().global;
     binomial_test(map.photons, map.paths, 4.0 * SIDE * SIDE / power).assert_passes(level());
 }

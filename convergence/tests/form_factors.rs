@@ -93,7 +93,8 @@ fn scene(pair: &Pair, pixels: u32) -> Builder {
 /// Emits photons and stops them where they first land.
 fn count(pair: &Pair) -> Statistics {
     let world = scene(pair, 1).build();
-    let config = PhotonMapperConfig { max_depth: Some(2), ..map_view(Show::Direct, PATHS) };
+    // Sent everywhere, so that their number is their share of the light.
+    let config = PhotonMapperConfig { max_depth: Some(2), aim: false, ..map_view(Show::Direct, PATHS) };
     let statistics = session(&world, Method::PhotonMapper(config), 1, 1).statistics().clone();
     let books = &statistics.ledger.lights[0];
     let landed = books.ended[0] / books.emitted[0];
