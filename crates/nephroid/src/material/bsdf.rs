@@ -164,9 +164,10 @@ impl Bsdf {
 
     /// Draws a direction from uniform numbers in [0, 1), `u_lobe` choosing between lobes. `None` where
     /// the walk ends: the surface is black or the direction drawn is on the wrong side.
+    #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {
         let wi = match &self.lobes {
-            Lobes::Diffuse(_) => Lambertian::sample(&self.frame, u),
+            Lobes::Diffuse(lambertian) => return self.sample_diffuse(lambertian, wo, u, transport),
             Lobes::Phong(phong) => phong.sample(&self.frame, wo, u, u_lobe),
             _ => return self.sample_dirac(wo, u_lobe, transport),
         };
@@ -180,6 +181,25 @@ impl Bsdf {
         } else {
             None
         }
+    }
+
+    /// The cosine and the density cancel to the albedo.
+    #[inline]
+    fn sample_diffuse(
+        &self,
+        lambertian: &Lambertian,
+        wo: Vec3,
+        u: Vec2,
+        transport: Transport,
+    ) -> Option<BsdfSample> {
+        let wi = Lambertian::sample(&self.frame, u).normalize();
+        let pdf_solid_angle = Lambertian::pdf(self.frame.n, wi);
+        if pdf_solid_angle == 0.0 || !self.both_above(wo, wi) {
+            return None;
+        }
+        let weight = lambertian.albedo * self.carried(wo, wi, transport);
+        let (dirac, transmitted) = (false, false);
+        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, dirac, transmitted })
     }
 
     /// The Dirac lobes, reflection first and then transmission, each with its full weight: following
@@ -201,6 +221,9 @@ impl Bsdf {
     #[inline]
     pub fn adjoint_factor(&self, wo: Vec3, wi: Vec3) -> f32 {
         let Self { ng, frame: Frame { n: ns, .. }, .. } = self;
+        if ng == ns {
+            return 1.0;
+        }
         let over = wo.dot(*ns) * wi.dot(*ng);
         let under = wo.dot(*ng) * wi.dot(*ns);
         normals_ratio(over, under)

@@ -21,6 +21,17 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
     (libm::sinf(x), libm::cosf(x))
 }
 
+/// Sine and cosine of πt/4 for t in [-1, 1], to 1.2e-7: their Taylor series. Much faster than the general
+/// ones, which have to find the quadrant first.
+#[inline]
+pub fn sin_cos_of_quarter(t: f32) -> (f32, f32) {
+    let x = t * std::f32::consts::FRAC_PI_4;
+    let z = x * x;
+    let sin = x * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z * (1.0 / 362_880.0)))));
+    let cos = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40_320.0))));
+    (sin, cos)
+}
+
 /// Tangent of an angle in radians.
 #[inline]
 pub fn tan(x: f32) -> f32 {
@@ -83,6 +94,20 @@ pub fn cos_deg(degrees: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_short_series_are_as_good_as_single_precision() {
+        for i in -1000..=1000 {
+            let t = i as f32 / 1000.0;
+            let (sin, cos) = sin_cos_of_quarter(t);
+            let x = f64::from(t) * std::f64::consts::FRAC_PI_4;
+            assert!(
+                (f64::from(sin) - libm::sin(x)).abs() < 1.2e-7
+                    && (f64::from(cos) - libm::cos(x)).abs() < 1.2e-7
+            );
+        }
+        assert_eq!(sin_cos_of_quarter(0.0), (0.0, 1.0));
+    }
 
     #[test]
     fn right_angles_are_exact() {

@@ -3,7 +3,7 @@
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use super::real::{atan2, cos, exp_m1, ln, pow, sin_cos};
+use super::real::{atan2, cos, exp_m1, ln, pow, sin_cos, sin_cos_of_quarter};
 use super::{Vec2, Vec3};
 
 /// Uniform on the unit disk, by concentric squares (Shirley and Chiu 1997).
@@ -13,13 +13,14 @@ pub fn square_to_disk(u: Vec2) -> Vec2 {
     if v == Vec2::ZERO {
         return Vec2::ZERO;
     }
-    let (r, phi) = if v.x.abs() > v.y.abs() {
-        (v.x, FRAC_PI_4 * (v.y / v.x))
+    if v.x.abs() > v.y.abs() {
+        let (sin, cos) = sin_cos_of_quarter(v.y / v.x);
+        Vec2::new(v.x * cos, v.x * sin)
     } else {
-        (v.y, FRAC_PI_2 - FRAC_PI_4 * (v.x / v.y))
-    };
-    let (sin, cos) = sin_cos(phi);
-    Vec2::new(r * cos, r * sin)
+        // The angle is counted from the other axis.
+        let (sin, cos) = sin_cos_of_quarter(v.x / v.y);
+        Vec2::new(v.y * sin, v.y * cos)
+    }
 }
 
 /// Inverse of [`square_to_disk`].

@@ -12,11 +12,11 @@ use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::world::World;
 
 /// Paths that are traced as one piece of work. Their photons are joined in the order of the paths.
-const CHUNK: u64 = 4096;
+const CHUNK: u64 = 2048;
 
-/// Pieces of work between two joinings: enough for any number of threads, and few enough that books
-/// of a thousand lights take little memory.
-const BATCH: usize = 512;
+/// Pieces of work between two joinings: enough for any number of threads, and few enough that their memory is
+/// soon used again.
+const BATCH: usize = 128;
 
 /// The pilot goes on until it has counted so many photons for each map, which tells their number per
 /// path to 3 %…
@@ -135,7 +135,7 @@ fn round_up(paths: u64, world: &World, settings: &WalkSettings) -> u64 {
 fn count(world: &World, settings: &WalkSettings, map: MapKind, store_direct: bool, seed: u64) -> (u64, u64) {
     let key = Key::new(seed, 0, Stream::Pilot).with(map as u64);
     let (mut paths, mut counted) = (0, 0);
-    let mut batch = 2 * CHUNK;
+    let mut batch = 4 * CHUNK;
     loop {
         let trial = |chunk| {
             let mut books = Ledger::new(world.light_count());
@@ -244,24 +244,33 @@ fn emit<H: Default, T: Send>(
     let mut photons = [Vec::new(), Vec::new()];
     let mut ledger = Ledger::new(world.light_count());
     let chunks = paths.div_ceil(CHUNK);
-    for first in (0..chunks).step_by(BATCH) {
-        let traced: Vec<_> = (first..(first + BATCH as u64).min(chunks))
-            .into_par_iter()
-            .map(|chunk| {
-                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-                trace(world, settings, map, range, key, work, record, &keep)
-            })
-            .collect();
+    let mut join = |traced: Vec<([Vec<T>; 2], Ledger)>| {
         for (stored, books) in traced {
             for (all, mut more) in photons.iter_mut().zip(stored) {
                 all.append(&mut more);
             }
             ledger.append(&books);
         }
+    };
+    let mut before = Vec::new();
+    for first in (0..chunks).step_by(BATCH) {
+        let trace_batch = || {
+            (first..(first + BATCH as u64).min(chunks))
+                .into_par_iter()
+                .map(|chunk| {
+                    let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
+                    trace(world, settings, map, range, key, work, record, &keep)
+                })
+                .collect()
+        };
+        // A batch is joined while the next is traced.
+        let joined = std::mem::take(&mut before);
+        (before, ()) = rayon::join(trace_batch, || join(joined));
         if work.cancelled() {
             return None;
         }
     }
+    join(before);
     Some((photons, ledger))
 }
 
