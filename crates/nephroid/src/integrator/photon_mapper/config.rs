@@ -84,8 +84,8 @@ pub enum DirectSource {
 pub enum FinalGather {
     /// The maps on the spot.
     Off,
-    /// So many rays that a pixel has 64, between 1 and 16 a camera sample that reads the maps; off where direct light
-    /// comes from the map or the picture shows one map.
+    /// So many rays that a pixel has 64, between 1 and 16 a camera sample that reads the maps, and fewer where indirect
+    /// light is less than half of all; off where direct light comes from the map or the picture shows one map.
     #[default]
     Auto,
     /// So many rays for each camera sample that reads the maps.
@@ -155,6 +155,11 @@ impl PhotonMapperConfig {
                 (!on_the_spot).then(|| (64 / samples_per_pixel.max(1)).clamp(1, 16))
             }
         }
+    }
+
+    /// Whether fewer gather rays are sent where they count for little.
+    pub(crate) fn spares_gather_rays(&self) -> bool {
+        self.final_gather == FinalGather::Auto
     }
 
     /// The width of estimates from a map.

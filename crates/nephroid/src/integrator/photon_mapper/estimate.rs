@@ -1,5 +1,7 @@
 //! The camera side of photon mapping: from a camera ray to radiance.
 
+use std::f32::consts::PI;
+
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
@@ -8,7 +10,7 @@ use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, 
 use crate::material::{Bsdf, BsdfSample, Transport};
 use crate::math::{Ray, Vec3};
 use crate::photon_map::{Bandwidth, NearestList, Query, gather};
-use crate::sampling::{Key, Sampler, Sequence};
+use crate::sampling::{Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
 use crate::world::{World, leave};
@@ -20,6 +22,9 @@ const SPLITS: u32 = 2;
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 6;
+
+/// The part of the gather rays that are sent where no photons are near.
+const WEIGHT_WHERE_DARK: f32 = 0.25;
 
 /// Surfaces that a gather ray may go on from because they are too near to be seen through the map.
 const MAX_NEAR_SURFACES: u32 = 8;
@@ -55,6 +60,28 @@ fn reading_stride(samples_per_pixel: u32) -> u32 {
         .into_iter()
         .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 4 * s)
         .unwrap_or(1)
+}
+
+/// The way of a camera path that was split at specular surfaces.
+#[derive(Clone, Copy)]
+struct Branch {
+    /// Tells ways apart: a leading one, then one bit for each split.
+    number: u64,
+    /// The share of what all ways carry that this one does.
+    share: f32,
+}
+
+impl Branch {
+    const WHOLE: Self = Self { number: 1, share: 1.0 };
+
+    /// The ways of two lobes.
+    fn split(self, lobes: [&BsdfSample; 2]) -> [Self; 2] {
+        let carried = lobes.map(|lobe| lobe.weight.mean() / lobe.radiance_scale);
+        [0, 1].map(|side| Self {
+            number: self.number << 1 | side as u64,
+            share: self.share * carried[side] / (carried[0] + carried[1]),
+        })
+    }
 }
 
 /// A surface that scatters light other than specularly, as a path meets it.
@@ -99,14 +126,13 @@ impl<'a> PhotonMapper<'a> {
     }
 
     /// Follows a path from the camera over specular surfaces and shades the first that is not.
-    /// `branch` numbers the ways of a path that was split.
     #[expect(clippy::too_many_arguments, reason = "the state of a path that splits in two")]
     fn trace<P: Probe>(
         &self,
         mut ray: Ray,
         mut throughput: Rgb,
         mut depth: u32,
-        branch: u64,
+        branch: Branch,
         sample: &mut PixelSample,
         tools: &mut Tools<'_, P>,
         out: &mut Components,
@@ -133,15 +159,13 @@ impl<'a> PhotonMapper<'a> {
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
             if !bsdf.is_dirac() {
                 let vertex = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
-                let key = sample.key.with(branch);
-                self.shade(&vertex, throughput, key, sample, tools, out);
+                self.shade(&vertex, throughput, branch, sample, tools, out);
                 return;
             }
             let lobes = bsdf.dirac_lobes(wo, Transport::Radiance);
-            if let ([Some(a), Some(b)], true) = (lobes, branch < 1 << SPLITS) {
-                for (lobe, side) in [(a, 0), (b, 1)] {
+            if let ([Some(a), Some(b)], true) = (lobes, branch.number < 1 << SPLITS) {
+                for (lobe, branch) in [a, b].into_iter().zip(branch.split([&a, &b])) {
                     let ray = leave(&hit.point, lobe.wi);
-                    let branch = branch << 1 | side;
                     self.trace(ray, throughput * lobe.weight, depth + 1, branch, sample, tools, out);
                 }
                 return;
@@ -161,7 +185,7 @@ impl<'a> PhotonMapper<'a> {
         &self,
         vertex: &Vertex<'_>,
         throughput: Rgb,
-        key: Key,
+        branch: Branch,
         sample: &mut PixelSample,
         tools: &mut Tools<'_, P>,
         out: &mut Components,
@@ -169,9 +193,12 @@ impl<'a> PhotonMapper<'a> {
         let show = self.config.show;
         let shows_direct = matches!(show, Show::All | Show::Direct);
         let shows_global = matches!(show, Show::All | Show::Indirect | Show::Global);
+        // What is seen beside the light that gather rays bring.
+        let mut beside = Rgb::BLACK;
         if shows_direct && self.config.direct == DirectSource::Rays && self.fits(vertex.depth + 1) {
             let direct = self.direct(vertex, &mut sample.sampler);
             out.direct += throughput * direct;
+            beside += direct;
             tools.probe.light(LightPart::Direct, direct);
         }
         if !sample.index.is_multiple_of(self.stride) {
@@ -182,7 +209,9 @@ impl<'a> PhotonMapper<'a> {
         let look_up = |map, direct, other| LookUp { map, direct, other };
         if self.config.shows_caustics() {
             let wanted = look_up(MapName::Caustic, None, Some(LightPart::Caustic));
-            out.caustic += throughput * self.look_up(&wanted, vertex, self.caustic_bandwidth, tools).1;
+            let caustic = self.look_up(&wanted, vertex, self.caustic_bandwidth, tools).1;
+            out.caustic += throughput * caustic;
+            beside += caustic;
         }
         let gathers = self.gather_rays.is_some();
         if self.config.direct == DirectSource::Map || (shows_global && !gathers) {
@@ -209,14 +238,17 @@ impl<'a> PhotonMapper<'a> {
             }
         }
         if shows_global && self.fits(vertex.depth + 2) {
-            let (bsdf, rays) = match self.gather_rays {
-                Some(rays) => (*vertex.bsdf, rays),
+            let (bsdf, most) = match self.gather_rays {
+                Some(most) => (*vertex.bsdf, most),
                 None if vertex.bsdf.has_glossy_lobe() => (vertex.bsdf.glossy_part(), 1),
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
             let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.neighbors);
-            let first = u64::from(sample.index / self.stride) * u64::from(rays);
+            let wanted = branch.share * self.weight_of_gathering(&bsdf, guide.as_ref(), beside);
+            let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
+            let key = sample.key.with(branch.number);
+            let first = u64::from(sample.index / self.stride) * u64::from(most);
             let found: Rgb = (first..first + u64::from(rays))
                 .map(|ray| {
                     tools.probe.begin(Some(ray), throughput / rays as f32);
@@ -230,6 +262,19 @@ impl<'a> PhotonMapper<'a> {
                 out.global += throughput * self.afterglow(&vertex, tools);
             }
         }
+    }
+
+    /// The part of the gather rays that the light they bring is worth beside other light, as far as that is
+    /// known before: all where it is half of the light or more.
+    fn weight_of_gathering(&self, bsdf: &Bsdf, guide: Option<&Facing<'_>>, beside: Rgb) -> f32 {
+        if !self.config.spares_gather_rays() {
+            return 1.0;
+        }
+        let Some(guide) = guide else { return WEIGHT_WHERE_DARK };
+        let albedo = bsdf.diffuse_albedo() + bsdf.glossy_albedo();
+        let gathered = (albedo * guide.irradiance).mean() / PI;
+        let light = gathered + beside.mean();
+        if light > 0.0 { (2.0 * gathered / light).min(1.0) } else { 1.0 }
     }
 
     /// What a gather ray brings from where it lands: all of the light, or from near by what no ray that
@@ -384,7 +429,7 @@ impl Estimator for PhotonMapper<'_> {
     ) -> Components {
         let mut out = Components::default();
         let ray = sample.ray;
-        self.trace(ray, Rgb::WHITE, 1, 1, sample, &mut Tools { neighbors, probe }, &mut out);
+        self.trace(ray, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
         out
     }
 }
@@ -403,11 +448,14 @@ fn start_gather(
         Some(_) if bsdf.has_glossy_lobe() => 0.5,
         Some(_) => 1.0,
     };
-    let wi = match guide {
+    let (wi, pdf_of_guide) = match guide {
         Some(guide) if u_technique < guide_share => guide.sample(u),
-        _ => bsdf.sample(wo, u, u_lobe, Transport::Radiance)?.wi,
+        _ => {
+            let wi = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?.wi;
+            (wi, guide.map_or(0.0, |g| g.pdf(wi)))
+        }
     };
-    let pdf = guide_share * guide.map_or(0.0, |g| g.pdf(wi)) + (1.0 - guide_share) * bsdf.pdf(wo, wi);
+    let pdf = guide_share * pdf_of_guide + (1.0 - guide_share) * bsdf.pdf(wo, wi);
     let weight = bsdf.eval(wo, wi) * (bsdf.cosine(wi) / pdf);
     (pdf > 0.0 && !weight.is_black()).then(|| (leave(point, wi), weight))
 }

@@ -18,6 +18,8 @@ const COSINE_SHARE: f32 = 0.25;
 #[derive(Clone, Debug)]
 pub(super) struct Guide {
     frame: Frame,
+    /// Irradiance by the light that it leads to, W/m².
+    irradiance: Rgb,
     /// Power that came through each cell; once finished, probabilities up to and including it.
     cells: [f32; CELLS],
 }
@@ -25,12 +27,13 @@ pub(super) struct Guide {
 impl Guide {
     /// For the side of a surface that `normal` points to.
     pub fn new(normal: Vec3) -> Self {
-        Self { frame: Frame::from_normal(normal), cells: [0.0; CELLS] }
+        Self { frame: Frame::from_normal(normal), irradiance: Rgb::BLACK, cells: [0.0; CELLS] }
     }
 
-    /// Adds a photon that came from direction `wi`, shared out among the four nearest cells: few photons
+    /// Adds a photon that came from direction `wi`, of a power in W and an irradiance in W/m², shared out among the four nearest cells: few photons
     /// stand for all of the light from around there.
-    pub fn add(&mut self, wi: Vec3, power: Rgb) {
+    pub fn add(&mut self, wi: Vec3, power: Rgb, irradiance: Rgb) {
+        self.irradiance += irradiance;
         let local = self.frame.to_local(wi);
         if local.z <= 0.0 {
             return;
@@ -61,25 +64,31 @@ impl Guide {
     /// The density above a surface of a normal not far from its own, turned with it: no direction that
     /// the surface reflects from is left out.
     pub fn facing(&self, normal: Vec3) -> Facing<'_> {
-        Facing { cells: &self.cells, frame: self.frame.turned_to(normal) }
+        let frame = self.frame.turned_to(normal);
+        Facing { irradiance: self.irradiance, cells: &self.cells, frame }
     }
 }
 
 /// A guide above a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facing<'a> {
+    /// Irradiance by the light that it leads to, W/m².
+    pub irradiance: Rgb,
     cells: &'a [f32; CELLS],
     frame: Frame,
 }
 
 impl Facing<'_> {
-    /// A direction.
-    pub fn sample(&self, u: Vec2) -> Vec3 {
+    /// A direction and its density per unit solid angle.
+    pub fn sample(&self, u: Vec2) -> (Vec3, f32) {
         let cell = self.cells.partition_point(|&c| c <= u.x).min(CELLS - 1);
-        let inside = (u.x - self.start(cell)) / (self.cells[cell] - self.start(cell));
+        let probability = self.cells[cell] - self.start(cell);
+        let inside = (u.x - self.start(cell)) / probability;
         let (column, row) = ((cell % SIDE) as f32, (cell / SIDE) as f32);
         let square = Vec2::new(column + inside.clamp(0.0, 1.0f32.next_down()), row + u.y) / SIDE as f32;
-        self.frame.to_world(warp::square_to_cosine_hemisphere(square)).normalize()
+        let local = warp::square_to_cosine_hemisphere(square);
+        let pdf = probability * CELLS as f32 * warp::square_to_cosine_hemisphere_pdf(local);
+        (self.frame.to_world(local).normalize(), pdf)
     }
 
     /// Its density per unit solid angle.
@@ -114,18 +123,26 @@ mod tests {
         let mut guide = Guide::new(Vec3::new(0.6, 0.0, 0.8));
         for i in 0..50 {
             let wi = Vec3::new(0.5 + i as f32 * 0.005, 0.3, 0.8).normalize();
-            guide.add(wi, Rgb::splat(1.0 + (i % 7) as f32));
+            guide.add(wi, Rgb::splat(1.0 + (i % 7) as f32), Rgb::WHITE);
         }
         guide.finish();
         let mut rng = Pcg32::new(3);
         let alpha = sidak(ALPHA, 2);
         for normal in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.28, 0.75).normalize()] {
             let guide = guide.facing(normal);
+            let mut differing = 0;
             let outcome = SphereTest::default().run(
-                || Some(guide.sample(Vec2::from_array(rng.vec2_f32())).as_dvec3().to_array()),
+                || {
+                    let (wi, pdf) = guide.sample(Vec2::from_array(rng.vec2_f32()));
+                    // Next to the edge of a cell rounding decides for one or the other.
+                    let same = (guide.pdf(wi) / pdf - 1.0).abs() < 1e-3;
+                    differing += u32::from(!same);
+                    Some(wi.as_dvec3().to_array())
+                },
                 |w| f64::from(guide.pdf(Vec3::from_array(w.map(|x| x as f32)))),
             );
             outcome.assert_passes(alpha);
+            assert!(differing < 100, "{differing}");
             // Just above the horizon of the surface, on all sides: nothing is left out.
             let frame = Frame::from_normal(normal);
             for i in 0..64 {

@@ -66,10 +66,10 @@ fn guide(map: &PhotonMap, position: Vec3, normal: Vec3, max_radius: f32, scratch
     let mut guide = Guide::new(normal);
     let query = Query { position, normal, max_photon_depth: None };
     let bandwidth = Bandwidth::Nearest { k: GUIDE_PHOTONS, max_radius };
-    gather(map, &query, Kernel::Box, bandwidth, scratch, |photon, _| {
+    gather(map, &query, Kernel::Box, bandwidth, scratch, |photon, weight| {
         // Light that comes straight from a light is sampled there.
         if photon.depth > 1 {
-            guide.add(photon.wi, photon.power);
+            guide.add(photon.wi, photon.power, photon.power * weight);
         }
     });
     guide.finish();
