@@ -1,10 +1,9 @@
 //! The camera side of photon mapping: from a camera ray to radiance.
 
-use std::f32::consts::PI;
+mod gather_rays;
 
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
-use super::guide::Facing;
 use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport};
@@ -22,12 +21,6 @@ const SPLITS: u32 = 2;
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 6;
-
-/// The part of the gather rays that are sent where no photons are near.
-const WEIGHT_WHERE_DARK: f32 = 0.25;
-
-/// Surfaces that a gather ray may go on from because they are too near to be seen through the map.
-const MAX_NEAR_SURFACES: u32 = 8;
 
 /// What an estimate works with.
 struct Tools<'t, P> {
@@ -264,65 +257,6 @@ impl<'a> PhotonMapper<'a> {
         }
     }
 
-    /// The part of the gather rays that the light they bring is worth beside other light, as far as that is
-    /// known before: all where it is half of the light or more.
-    fn weight_of_gathering(&self, bsdf: &Bsdf, guide: Option<&Facing<'_>>, beside: Rgb) -> f32 {
-        if !self.config.spares_gather_rays() {
-            return 1.0;
-        }
-        let Some(guide) = guide else { return WEIGHT_WHERE_DARK };
-        let albedo = bsdf.diffuse_albedo() + bsdf.glossy_albedo();
-        let gathered = (albedo * guide.irradiance).mean() / PI;
-        let light = gathered + beside.mean();
-        if light > 0.0 { (2.0 * gathered / light).min(1.0) } else { 1.0 }
-    }
-
-    /// What a gather ray brings from where it lands: all of the light, or from near by what no ray that
-    /// goes on from there will bring. `sharp` is the share for which it brings caustics, and `throughput`
-    /// what reaches the surface that it left.
-    fn light_at<P: Probe>(
-        &self,
-        vertex: &Vertex<'_>,
-        far: bool,
-        sharp: Rgb,
-        throughput: Rgb,
-        sampler: &mut Sampler,
-        tools: &mut Tools<'_, P>,
-    ) -> Rgb {
-        let mut light = Rgb::BLACK;
-        tools.probe.carry(throughput);
-        if self.config.direct == DirectSource::Rays {
-            let direct = self.direct(vertex, sampler);
-            light += direct;
-            tools.probe.light(LightPart::Global, direct);
-        }
-        let global = Some(LightPart::Global);
-        if !sharp.is_black() {
-            tools.probe.carry(throughput * sharp);
-            let wanted = LookUp { map: MapName::Caustic, direct: None, other: global };
-            light += sharp * self.look_up(&wanted, vertex, self.caustic_bandwidth, tools).1;
-            tools.probe.carry(throughput);
-        }
-        if far || self.config.direct == DirectSource::Map {
-            let bandwidth = Bandwidth::Fixed { radius: self.global_radius };
-            let wanted = LookUp { map: MapName::Global, direct: global, other: global.filter(|_| far) };
-            let (direct, other) = self.look_up(&wanted, vertex, bandwidth, tools);
-            light += if far { direct + other } else { direct };
-        }
-        if !far {
-            light += self.afterglow(vertex, tools);
-        }
-        light
-    }
-
-    /// The light of caustics on other surfaces, which gather rays leave out: a small bright caustic
-    /// that few of them chance upon makes white specks, and its photons one bounce on do not.
-    fn afterglow<P: Probe>(&self, vertex: &Vertex<'_>, tools: &mut Tools<'_, P>) -> Rgb {
-        let smooth = Vertex { bsdf: &vertex.bsdf.diffuse_part(), ..*vertex };
-        let wanted = LookUp { map: MapName::Afterglow, direct: None, other: Some(LightPart::Global) };
-        self.look_up(&wanted, &smooth, self.afterglow_bandwidth, tools).1
-    }
-
     fn direct(&self, vertex: &Vertex<'_>, sampler: &mut Sampler) -> Rgb {
         let Vertex { point, bsdf, wo, .. } = *vertex;
         direct_light(self.world, point, bsdf, wo, self.config.direct_lights, sampler)
@@ -361,63 +295,6 @@ impl<'a> PhotonMapper<'a> {
         probe.look_up(wanted, gathered);
         (direct, other)
     }
-
-    /// One gather ray: on over specular surfaces to the first that is not, whose direct and global light
-    /// it brings home, and its caustics as far as it was sent by a glossy lobe: the others come by
-    /// [`Self::afterglow`]. Emission on the way is direct light's
-    /// and the caustic map's.
-    /// Where that surface is nearer than the map can resolve, a ray goes on from it in place of the
-    /// look-up; corners stay as bright as they are.
-    fn gather_ray<P: Probe>(
-        &self,
-        vertex: &Vertex<'_>,
-        guide: Option<&Facing<'_>>,
-        sampler: &mut Sampler,
-        tools: &mut Tools<'_, P>,
-    ) -> Rgb {
-        let mut found = Rgb::BLACK;
-        let Some((mut ray, mut throughput)) = start_gather(vertex, guide, sampler) else {
-            return found;
-        };
-        // The share that a glossy lobe has in the last surface's reflection: through it caustics are seen
-        // as they are, and the rest of that surface has them by its afterglow.
-        let mut sharp = glossy_share(vertex.bsdf, vertex.wo, ray.direction);
-        let mut depth = vertex.depth + 1;
-        let (mut distance, mut near) = (0.0, 0);
-        // A surface at the last segment can still reflect nothing: light needs one more.
-        while self.fits(depth + 1) {
-            let Some(hit) = self.world.intersect(&ray) else { break };
-            distance += hit.t;
-            let wo = -ray.direction;
-            let bsdf = self.world.bsdf(&hit, wo);
-            if bsdf.is_null() {
-                ray = leave(&hit.point, ray.direction);
-                continue;
-            }
-            tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
-            if !bsdf.is_dirac() {
-                let there = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
-                let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
-                found += throughput * self.light_at(&there, far, sharp, throughput, sampler, tools);
-                if far {
-                    break;
-                }
-                near += 1;
-                distance = 0.0;
-            }
-            let Some((next, carried)) = scatter(&bsdf, &hit.point, wo, throughput, depth - 1, sampler) else {
-                break;
-            };
-            if !bsdf.is_dirac() {
-                // Where nothing is gathered there is no afterglow, and the ray brings all caustics.
-                let gathers = self.gather_rays.is_some();
-                sharp = if gathers { glossy_share(&bsdf, wo, next.direction) } else { Rgb::WHITE };
-            }
-            (ray, throughput) = (next, carried);
-            depth += 1;
-        }
-        found
-    }
 }
 
 impl Estimator for PhotonMapper<'_> {
@@ -432,41 +309,6 @@ impl Estimator for PhotonMapper<'_> {
         self.trace(ray, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
         out
     }
-}
-
-/// The first segment of a gather ray, with its f·cos/pdf: by the guide, by the BSDF, or where there is
-/// a glossy lobe by an equal mixture of both.
-fn start_gather(
-    vertex: &Vertex<'_>,
-    guide: Option<&Facing<'_>>,
-    sampler: &mut Sampler,
-) -> Option<(Ray, Rgb)> {
-    let Vertex { point, bsdf, wo, .. } = *vertex;
-    let (u, u_lobe, u_technique) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-    let guide_share = match guide {
-        None => 0.0,
-        Some(_) if bsdf.has_glossy_lobe() => 0.5,
-        Some(_) => 1.0,
-    };
-    let (wi, pdf_of_guide) = match guide {
-        Some(guide) if u_technique < guide_share => guide.sample(u),
-        _ => {
-            let wi = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?.wi;
-            (wi, guide.map_or(0.0, |g| g.pdf(wi)))
-        }
-    };
-    let pdf = guide_share * pdf_of_guide + (1.0 - guide_share) * bsdf.pdf(wo, wi);
-    let weight = bsdf.eval(wo, wi) * (bsdf.cosine(wi) / pdf);
-    (pdf > 0.0 && !weight.is_black()).then(|| (leave(point, wi), weight))
-}
-
-/// The share of a BSDF that is in its glossy lobe.
-fn glossy_share(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Rgb {
-    if !bsdf.has_glossy_lobe() {
-        return Rgb::BLACK;
-    }
-    let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
-    bsdf.glossy_part().eval(wo, wi).zip(bsdf.eval(wo, wi), share)
 }
 
 /// Samples the next segment of a camera path, with roulette.
