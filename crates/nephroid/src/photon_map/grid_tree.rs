@@ -1,5 +1,5 @@
 use super::block::{Blocks, Hits, LANES};
-use super::index::{NearestList, PhotonIndex};
+use super::index::{Item, NearestList, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
 /// A tree over points whose nodes are grids of up to 64 cells.
@@ -224,8 +224,8 @@ impl GridTree {
 }
 
 impl PhotonIndex for GridTree {
-    fn build(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>) {
-        Self::build_from(len, position)
+    fn build_with<T: Item>(len: usize, point: impl Fn(usize) -> (Vec3, T) + Sync) -> (Self, Vec<T>) {
+        Self::build_from(len, point)
     }
 
     fn len(&self) -> usize {

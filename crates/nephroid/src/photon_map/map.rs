@@ -1,11 +1,10 @@
 use std::f32::consts::PI;
 
-use rayon::prelude::*;
-
 use super::grid_tree::GridTree;
 use super::index::PhotonIndex;
 use super::payload::Payload;
 use super::photon::{Photon, Photons};
+use crate::math::Vec3;
 
 /// The default of the largest radius, in radii that hold the photons wanted at the map's mean
 /// density: a place with a quarter of it still finds them all. Larger ones blur the dark places and
@@ -25,20 +24,20 @@ impl<I: PhotonIndex> PhotonMap<I> {
     ///
     /// Positions must be finite. Panics with 2³² photons or more.
     pub fn build(photons: Photons) -> Self {
-        Self::build_ordered(photons).0
+        let (index, payloads) = I::build_with(photons.stored(), arranged(&photons));
+        Self { index, payloads, emitted: photons.emitted() }
     }
 
     /// As [`Self::build`]; also returns, for each place, the number in the pass of the photon there.
     pub fn build_ordered(photons: Photons) -> (Self, Vec<u32>) {
-        let (all, emitted) = (photons.as_slice(), photons.emitted());
-        let (index, order) = I::build(all.len(), |i| all[i].position);
-        let share = (1.0 / emitted.max(1) as f64) as f32;
-        let payload = |number: &u32| {
-            let photon = &all[*number as usize];
-            Payload::new(&Photon { power: photon.power * share, ..*photon }, *number)
+        let arranged = arranged(&photons);
+        let with_number = |i| {
+            let (position, payload) = arranged(i);
+            (position, (payload, i as u32))
         };
-        let payloads = order.par_iter().map(payload).collect();
-        (Self { index, payloads, emitted }, order)
+        let (index, items) = I::build_with(photons.stored(), with_number);
+        let (payloads, order) = items.into_iter().unzip();
+        (Self { index, payloads, emitted: photons.emitted() }, order)
     }
 
     /// Where the photons are.
@@ -80,6 +79,15 @@ impl<I: PhotonIndex> PhotonMap<I> {
     }
 }
 
+/// What becomes of each photon of a pass: its place and all else about it.
+fn arranged(photons: &Photons) -> impl Fn(usize) -> (Vec3, Payload) + Sync {
+    let share = (1.0 / photons.emitted().max(1) as f64) as f32;
+    move |i| {
+        let photon = &photons.as_slice()[i];
+        (photon.position, Payload::new(&Photon { power: photon.power * share, ..*photon }, i as u32))
+    }
+}
+
 impl PhotonMap<GridTree> {
     /// The radius of a disc with `k` photons at the mean density over [`GridTree::covered_area`]; 0 if
     /// there are no photons or all lie on a line along an axis.
@@ -104,7 +112,6 @@ impl PhotonMap<GridTree> {
 mod tests {
     use super::*;
     use crate::color::Rgb;
-    use crate::math::Vec3;
     use crate::photon_map::BruteForce;
     use crate::photon_map::testing::{Rng, photon_at};
 

@@ -13,8 +13,8 @@ use crate::sampling::{Key, Stream};
 ///   always to the nearest, a light whose photons all carry the same power would come out up to 0.4 %
 ///   too bright or too dark.
 /// - Lights from 65 535 on have that number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(16))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub(super) struct Payload {
     normal: [i16; 2],
     depth: u16,
@@ -110,8 +110,9 @@ fn encode_direction(v: Vec3) -> [i16; 2] {
     } else {
         ((1.0 - p.y.abs()).copysign(p.x), (1.0 - p.x.abs()).copysign(p.y))
     };
-    // Saturates, and NaN is zero.
-    [x, y].map(|c| (c * STEPS).round() as i16)
+    // To the nearest: without a call, which `round` is where SSE4.1 may be missing. Saturates, and NaN is
+    // zero.
+    [x, y].map(|c| (c * STEPS + 0.5f32.copysign(c)) as i16)
 }
 
 /// The point of the octahedron, |x| + |y| + |z| = 1, that a point of the square stands for.
