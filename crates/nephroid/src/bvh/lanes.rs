@@ -175,21 +175,25 @@ mod avx2 {
 
     use super::{LANES, Lanes, Work};
 
-    /// Proof that the machine has AVX2: only [`detect`] makes it.
+    /// Proof that the machine has AVX2 and can count bits, which all that have the one do: only [`detect`]
+    /// makes it.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) struct Detected(());
 
     pub(super) fn detect() -> Option<Detected> {
-        std::arch::is_x86_feature_detected!("avx2").then_some(Detected(()))
+        let bits = is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2");
+        (bits && is_x86_feature_detected!("avx2")).then_some(Detected(()))
     }
 
     #[inline]
     pub(super) fn run<W: Work>(_: Detected, work: W) -> W::Output {
-        // SAFETY: `Detected` exists, so the machine has AVX2.
+        // SAFETY: `Detected` exists, so the machine has all that is enabled.
         unsafe { with_avx2(work) }
     }
 
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,popcnt,bmi1,bmi2")]
     fn with_avx2<W: Work>(work: W) -> W::Output {
         work.run::<Eight>()
     }
