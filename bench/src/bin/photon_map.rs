@@ -229,14 +229,7 @@ fn rate(queries: &[Query], run: Contestant) -> f64 {
 }
 
 fn by_radius(map: &PhotonMap, query: &Query, radius: f32) -> Rgb {
-    let mut sum = Rgb::BLACK;
-    map.index().for_each_within(
-        query.position,
-        radius * radius,
-        #[inline(always)]
-        |place, _| sum += map.photon(place).power,
-    );
-    sum
+    map.power_within(query.position, radius)
 }
 
 fn kiddo_by_radius(tree: &ImmutableKdTree<f32, 3>, powers: &[Rgb], query: &Query, radius: f32) -> Rgb {

@@ -23,6 +23,14 @@ pub(crate) trait Lanes: Copy {
     fn lt(self, other: Self) -> u32;
     fn le(self, other: Self) -> u32;
     fn eq(self, other: Self) -> u32;
+    /// All bits of a lane where `self` is at most `other`, and none elsewhere.
+    fn mask_le(self, other: Self) -> Self;
+    /// The bits that both have.
+    fn and(self, other: Self) -> Self;
+    /// Floats whose exponents are the highest byte of each word less `less`; any number if that is negative.
+    fn from_exponent(words: &[u32; LANES], less: u32) -> Self;
+    /// A byte of each word, as a number.
+    fn from_byte<const BYTE: i32>(words: &[u32; LANES]) -> Self;
 }
 
 /// Something to be done with either kind of lanes.
@@ -140,6 +148,22 @@ impl Lanes for [f32; LANES] {
     fn eq(self, other: Self) -> u32 {
         bits(|i| self[i] == other[i])
     }
+    #[inline(always)]
+    fn mask_le(self, other: Self) -> Self {
+        each(|i| f32::from_bits(if self[i] <= other[i] { u32::MAX } else { 0 }))
+    }
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        each(|i| f32::from_bits(self[i].to_bits() & other[i].to_bits()))
+    }
+    #[inline(always)]
+    fn from_exponent(words: &[u32; LANES], less: u32) -> Self {
+        each(|i| f32::from_bits((words[i] >> 24 << 23).wrapping_sub(less << 23)))
+    }
+    #[inline(always)]
+    fn from_byte<const BYTE: i32>(words: &[u32; LANES]) -> Self {
+        each(|i| f32::from((words[i] >> (8 * BYTE)) as u8))
+    }
 }
 
 /// The one place with `unsafe`: the default build is for every x86-64, and users do not pass
@@ -151,21 +175,25 @@ mod avx2 {
 
     use super::{LANES, Lanes, Work};
 
-    /// Proof that the machine has AVX2: only [`detect`] makes it.
+    /// Proof that the machine has AVX2 and can count bits, which all that have the one do: only [`detect`]
+    /// makes it.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) struct Detected(());
 
     pub(super) fn detect() -> Option<Detected> {
-        std::arch::is_x86_feature_detected!("avx2").then_some(Detected(()))
+        let bits = is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2");
+        (bits && is_x86_feature_detected!("avx2")).then_some(Detected(()))
     }
 
     #[inline]
     pub(super) fn run<W: Work>(_: Detected, work: W) -> W::Output {
-        // SAFETY: `Detected` exists, so the machine has AVX2.
+        // SAFETY: `Detected` exists, so the machine has all that is enabled.
         unsafe { with_avx2(work) }
     }
 
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,popcnt,bmi1,bmi2")]
     fn with_avx2<W: Work>(work: W) -> W::Output {
         work.run::<Eight>()
     }
@@ -217,10 +245,39 @@ mod avx2 {
             // SAFETY: `Eight` is used under `with_avx2` only.
             Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
         }
+        #[inline(always)]
+        fn mask_le(self, other: Self) -> Self {
+            // SAFETY: `Eight` is used under `with_avx2` only.
+            Self(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn from_exponent(words: &[u32; LANES], less: u32) -> Self {
+            // SAFETY: eight words lie there, no alignment is asked for, and `Eight` is used under
+            // `with_avx2` only.
+            Self(unsafe {
+                let words = _mm256_loadu_si256(words.as_ptr().cast());
+                let exponents = _mm256_slli_epi32::<23>(_mm256_srli_epi32::<24>(words));
+                _mm256_castsi256_ps(_mm256_sub_epi32(exponents, _mm256_set1_epi32((less << 23) as i32)))
+            })
+        }
+        #[inline(always)]
+        fn from_byte<const BYTE: i32>(words: &[u32; LANES]) -> Self {
+            // SAFETY: as above.
+            Self(unsafe {
+                let words = _mm256_loadu_si256(words.as_ptr().cast());
+                let shifted = match BYTE {
+                    0 => words,
+                    1 => _mm256_srli_epi32::<8>(words),
+                    2 => _mm256_srli_epi32::<16>(words),
+                    _ => _mm256_srli_epi32::<24>(words),
+                };
+                _mm256_cvtepi32_ps(_mm256_and_si256(shifted, _mm256_set1_epi32(0xff)))
+            })
+        }
         // The instructions for the larger and the smaller give the second where either is not a number.
         lanewise!(
             plus: _mm256_add_ps, minus: _mm256_sub_ps, times: _mm256_mul_ps, over: _mm256_div_ps,
-            larger: _mm256_max_ps, smaller: _mm256_min_ps
+            larger: _mm256_max_ps, smaller: _mm256_min_ps, and: _mm256_and_ps
         );
         compare!(lt: _CMP_LT_OQ, le: _CMP_LE_OQ, eq: _CMP_EQ_OQ);
     }
@@ -242,13 +299,26 @@ mod tests {
             for turn in 0..LANES {
                 let a = L::load(&values);
                 let b = L::load(&each(|i| values[(i + turn) % LANES]));
-                let numbers =
-                    [a.plus(b), a.minus(b), a.times(b), a.over(b), a.larger(b), a.smaller(b), a.abs()];
+                let numbers = [
+                    a.plus(b),
+                    a.minus(b),
+                    a.times(b),
+                    a.over(b),
+                    a.larger(b),
+                    a.smaller(b),
+                    a.abs(),
+                    a.and(b),
+                ];
                 // Which NaN comes of two is not said.
                 let plain = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
                 out.extend(numbers.iter().flat_map(|n| n.store()).map(plain));
                 out.extend([a.lt(b), a.le(b), a.eq(b), a.lt(L::splat(0.5))]);
+                out.extend(a.mask_le(b).store().map(f32::to_bits));
             }
+            let words = std::array::from_fn(|i| 0x8000_ff01 + 0x0312_3456 * i as u32);
+            let bytes = [L::from_byte::<0>(&words), L::from_byte::<1>(&words), L::from_byte::<2>(&words)];
+            let numbers = [bytes[0], bytes[1], bytes[2], L::from_exponent(&words, 7)];
+            out.extend(numbers.iter().flat_map(|n| n.store()).map(f32::to_bits));
             out
         }
     }

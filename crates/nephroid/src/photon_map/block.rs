@@ -1,10 +1,8 @@
 use rayon::prelude::*;
 use wide::f32x8;
 
+use crate::bvh::{LANES, Lanes};
 use crate::math::Vec3;
-
-/// Points to a block.
-pub(super) const LANES: usize = 8;
 
 /// Positions in blocks of eight, coordinate by coordinate, 12 bytes a point: what lies together is read
 /// together, and one instruction computes with several of them.
@@ -100,5 +98,13 @@ impl Blocks {
         mask &= u32::MAX << (start - place);
         mask &= u32::MAX >> (31 - (end - 1 - place).min(31));
         (dist_sq.to_array(), mask, place + LANES as u32)
+    }
+
+    /// The squared distances of the points in a block.
+    #[inline(always)]
+    pub fn dist_sq<L: Lanes>(&self, number: usize, [x, y, z]: [L; 3]) -> L {
+        let block = &self.blocks[number];
+        let (x, y, z) = (L::load(&block.x).minus(x), L::load(&block.y).minus(y), L::load(&block.z).minus(z));
+        x.times(x).plus(y.times(y)).plus(z.times(z))
     }
 }

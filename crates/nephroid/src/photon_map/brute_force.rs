@@ -1,4 +1,4 @@
-use super::index::{NearestList, PhotonIndex};
+use super::index::{Item, NearestList, PhotonIndex};
 use crate::math::{Bounds, Vec3};
 
 /// An index that looks at every point: the oracle of the others, for tests and tiny maps.
@@ -8,9 +8,10 @@ pub struct BruteForce {
 }
 
 impl PhotonIndex for BruteForce {
-    fn build(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>) {
-        let order = (0..u32::try_from(len).expect("fewer than 2^32 photons")).collect();
-        (Self { positions: (0..len).map(position).collect() }, order)
+    fn build_with<T: Item>(len: usize, point: impl Fn(usize) -> (Vec3, T) + Sync) -> (Self, Vec<T>) {
+        assert!(u32::try_from(len).is_ok(), "an index holds fewer than 2^32 photons, not {len}");
+        let (positions, items) = (0..len).map(point).unzip();
+        (Self { positions }, items)
     }
 
     fn len(&self) -> usize {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::block::Blocks;
 use super::grid_tree::{GridTree, MAX_LEVELS, Node};
+use super::index::Item;
 use crate::math::{Bounds, DVec3, Vec3};
 
 /// The most points to a cell without a node of its own.
@@ -26,14 +27,13 @@ const CHUNK: usize = 1 << 15;
 /// all of the area.
 const FARTHEST_CELL: f64 = 64.0;
 
-/// A point while it is being arranged.
-#[derive(Clone, Copy)]
-struct Entry {
+/// A point while it is being arranged, with what goes with it: that is then read and written in long rows
+/// only, and never fetched from all over memory.
+#[derive(Clone, Copy, Default)]
+struct Entry<T> {
     position: Vec3,
-    number: u32,
+    item: T,
 }
-
-const NOWHERE: Entry = Entry { position: Vec3::ZERO, number: 0 };
 
 /// A part of a tree. Its indices are those of its own lists, its places those of the whole.
 #[derive(Default)]
@@ -47,54 +47,62 @@ struct Part {
 }
 
 impl GridTree {
-    pub(super) fn build_from(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>) {
+    pub(super) fn build_from<T: Item>(
+        len: usize,
+        point: impl Fn(usize) -> (Vec3, T) + Sync,
+    ) -> (Self, Vec<T>) {
         assert!(u32::try_from(len).is_ok(), "an index holds fewer than 2^32 photons, not {len}");
-        let entry = |i: usize| Entry { position: position(i), number: i as u32 };
-        let mut entries: Vec<_> = (0..len).into_par_iter().map(entry).collect();
-        let chunks: Vec<_> = entries.par_chunks(CHUNK).map(bounds).collect();
+        let entry = |i: usize| {
+            let (position, item) = point(i);
+            Entry { position, item }
+        };
+        let mut given: Vec<_> = (0..len).into_par_iter().map(entry).collect();
+        let chunks: Vec<_> = given.par_chunks(CHUNK).map(bounds).collect();
         let bounds = chunks.into_iter().fold(Bounds::EMPTY, Bounds::union);
+        let mut sorted: Vec<_> = (0..len).into_par_iter().map(|_| Entry::default()).collect();
         let mut part = Part::default();
         if len > 0 {
             part.nodes.push(grid(bounds, len));
-            part.arrange(0, &mut entries, &mut vec![NOWHERE; len], 0, 1);
+            part.arrange(0, &mut given, &mut sorted, false, 0, 1);
         }
+        drop(given);
         let tree = Self {
             bounds,
             covered_area: covered_area(part.cells),
-            blocks: Blocks::new(len, |place| entries[place].position),
+            blocks: Blocks::new(len, |place| sorted[place].position),
             nodes: part.nodes,
             starts: part.starts,
         };
-        (tree, entries.par_iter().map(|e| e.number).collect())
+        (tree, sorted.par_iter().map(|e| e.item).collect())
     }
 }
 
 impl Part {
     /// Sorts the points of a node, which come to the places from `place` on, and makes the nodes in it.
-    /// `spare` only lends its memory.
-    fn arrange(
+    /// The points are in `from`; they end in `to`, or if `back` in `from`.
+    fn arrange<T: Item>(
         &mut self,
         number: usize,
-        entries: &mut [Entry],
-        spare: &mut [Entry],
+        from: &mut [Entry<T>],
+        to: &mut [Entry<T>],
+        back: bool,
         place: u32,
         level: usize,
     ) {
-        let alone = entries.len() < PARALLEL;
+        let alone = from.len() < PARALLEL;
         let mut node = self.nodes[number];
-        let counts =
-            if alone { self.sort(&node, entries, spare) } else { sort_together(&node, entries, spare) };
-        let runs = split(entries, spare, &counts);
+        let counts = if alone { self.sort(&node, from, to) } else { sort_together(&node, from, to) };
+        let runs = split(to, from, &counts);
         let boxes: Vec<_> = if alone {
-            runs.iter().map(|run| bounds(run.entries)).collect()
+            runs.iter().map(|run| bounds(run.sorted)).collect()
         } else {
-            runs.par_iter().map(|run| bounds(run.entries)).collect()
+            runs.par_iter().map(|run| bounds(run.sorted)).collect()
         };
         node.first_start = self.starts.len() as u32;
         node.first_child = self.nodes.len() as u32;
         let mut inner = Vec::new();
         for (run, bounds) in runs.into_iter().zip(boxes) {
-            let len = run.entries.len();
+            let len = run.sorted.len();
             let below = grid(bounds, len);
             node.occupied |= 1 << run.cell;
             self.starts.push(place + run.first);
@@ -104,6 +112,9 @@ impl Part {
                 inner.push(run);
             } else {
                 self.cells.push((len as u32, area(bounds, len)));
+                if back {
+                    run.spare.copy_from_slice(run.sorted);
+                }
             }
         }
         self.starts.push(place + counts.iter().sum::<u32>());
@@ -111,13 +122,13 @@ impl Part {
         let first = node.first_child as usize;
         if alone {
             for (i, run) in inner.into_iter().enumerate() {
-                self.arrange(first + i, run.entries, run.spare, place + run.first, level + 1);
+                self.arrange(first + i, run.sorted, run.spare, !back, place + run.first, level + 1);
             }
         } else {
             let nodes = &self.nodes;
-            let part = |(i, run): (usize, Run)| {
+            let part = |(i, run): (usize, Run<T>)| {
                 let mut part = Self { nodes: vec![nodes[first + i]], ..Self::default() };
-                part.arrange(0, run.entries, run.spare, place + run.first, level + 1);
+                part.arrange(0, run.sorted, run.spare, !back, place + run.first, level + 1);
                 part
             };
             let parts: Vec<_> = inner.into_par_iter().enumerate().map(part).collect();
@@ -143,36 +154,35 @@ impl Part {
     }
 
     /// Sorts points by cell, those of a cell in the order they had; returns how many each holds.
-    fn sort(&mut self, node: &Node, entries: &mut [Entry], spare: &mut [Entry]) -> [u32; 64] {
+    fn sort<T: Item>(&mut self, node: &Node, from: &[Entry<T>], to: &mut [Entry<T>]) -> [u32; 64] {
         let mut counts = [0; 64];
         self.cell_of.clear();
-        self.cell_of.extend(entries.iter().map(|entry| {
+        self.cell_of.extend(from.iter().map(|entry| {
             let cell = node.cell(entry.position);
             counts[cell as usize % 64] += 1;
             cell as u8
         }));
         let mut next = firsts(&counts);
-        for (entry, cell) in entries.iter().zip(&self.cell_of) {
+        for (entry, cell) in from.iter().zip(&self.cell_of) {
             let next = &mut next[usize::from(*cell) % 64];
-            spare[*next as usize] = *entry;
+            to[*next as usize] = *entry;
             *next += 1;
         }
-        entries.copy_from_slice(spare);
         counts
     }
 }
 
 /// As [`Part::sort`], by several threads, each of which sorts chunks of the points.
-fn sort_together(node: &Node, entries: &mut [Entry], spare: &mut [Entry]) -> [u32; 64] {
-    let count = |chunk: &[Entry]| {
+fn sort_together<T: Item>(node: &Node, from: &[Entry<T>], to: &mut [Entry<T>]) -> [u32; 64] {
+    let count = |chunk: &[Entry<T>]| {
         let mut counts = [0u32; 64];
         chunk.iter().for_each(|entry| counts[node.cell(entry.position) as usize % 64] += 1);
         counts
     };
-    let counts: Vec<_> = entries.par_chunks(CHUNK).map(count).collect();
+    let counts: Vec<_> = from.par_chunks(CHUNK).map(count).collect();
     // Where the points of each chunk go: cell by cell, and within a cell chunk by chunk.
-    let mut targets: Vec<Vec<&mut [Entry]>> = counts.iter().map(|_| Vec::with_capacity(64)).collect();
-    let mut rest = &mut *spare;
+    let mut targets: Vec<Vec<&mut [Entry<T>]>> = counts.iter().map(|_| Vec::with_capacity(64)).collect();
+    let mut rest = to;
     for cell in 0..64 {
         for (targets, counts) in targets.iter_mut().zip(&counts) {
             let target;
@@ -180,7 +190,7 @@ fn sort_together(node: &Node, entries: &mut [Entry], spare: &mut [Entry]) -> [u3
             targets.push(target);
         }
     }
-    entries.par_chunks(CHUNK).zip(targets).for_each(|(chunk, mut targets)| {
+    from.par_chunks(CHUNK).zip(targets).for_each(|(chunk, mut targets)| {
         let mut next = [0; 64];
         for entry in chunk {
             let cell = node.cell(entry.position) as usize % 64;
@@ -188,29 +198,29 @@ fn sort_together(node: &Node, entries: &mut [Entry], spare: &mut [Entry]) -> [u3
             next[cell] += 1;
         }
     });
-    entries
-        .par_chunks_mut(CHUNK)
-        .zip(spare.par_chunks(CHUNK))
-        .for_each(|(to, from)| to.copy_from_slice(from));
     std::array::from_fn(|cell| counts.iter().map(|counts| counts[cell]).sum())
 }
 
-/// The points of a cell, and as much spare memory.
-struct Run<'a> {
+/// The points of a cell, and as much memory beside them.
+struct Run<'a, T> {
     cell: usize,
     first: u32,
-    entries: &'a mut [Entry],
-    spare: &'a mut [Entry],
+    sorted: &'a mut [Entry<T>],
+    spare: &'a mut [Entry<T>],
 }
 
 /// The cells that hold points.
-fn split<'a>(mut entries: &'a mut [Entry], mut spare: &'a mut [Entry], counts: &[u32; 64]) -> Vec<Run<'a>> {
+fn split<'a, T>(
+    mut sorted: &'a mut [Entry<T>],
+    mut spare: &'a mut [Entry<T>],
+    counts: &[u32; 64],
+) -> Vec<Run<'a, T>> {
     let mut runs = Vec::with_capacity(64);
     for (cell, (&first, &count)) in firsts(counts).iter().zip(counts).enumerate().filter(|(_, c)| *c.1 > 0) {
         let (mine, lent);
-        (mine, entries) = entries.split_at_mut(count as usize);
+        (mine, sorted) = sorted.split_at_mut(count as usize);
         (lent, spare) = spare.split_at_mut(count as usize);
-        runs.push(Run { cell, first, entries: mine, spare: lent });
+        runs.push(Run { cell, first, sorted: mine, spare: lent });
     }
     runs
 }
@@ -225,7 +235,7 @@ fn firsts(counts: &[u32; 64]) -> [u32; 64] {
     })
 }
 
-fn bounds(entries: &[Entry]) -> Bounds {
+fn bounds<T>(entries: &[Entry<T>]) -> Bounds {
     Bounds::of(entries.iter().map(|e| e.position))
 }
 

@@ -1,5 +1,10 @@
 use crate::math::{Bounds, Vec3};
 
+/// What an index arranges along with the points.
+pub trait Item: Copy + Default + Send + Sync {}
+
+impl<T: Copy + Default + Send + Sync> Item for T {}
+
 /// Finds the photons near a point. Knows positions only.
 ///
 /// An index arranges the photons in an order of its own; all its methods speak of a photon by its
@@ -9,7 +14,14 @@ pub trait PhotonIndex: Sized + Sync {
     /// Arranges `len` points; returns the index and, for each place, the number of the point there.
     ///
     /// Panics with 2³² points or more.
-    fn build(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>);
+    fn build(len: usize, position: impl Fn(usize) -> Vec3 + Sync) -> (Self, Vec<u32>) {
+        Self::build_with(len, |i| (position(i), i as u32))
+    }
+
+    /// Arranges `len` points, each of which has an item; returns the index and the items by place.
+    ///
+    /// Panics with 2³² points or more.
+    fn build_with<T: Item>(len: usize, point: impl Fn(usize) -> (Vec3, T) + Sync) -> (Self, Vec<T>);
 
     /// How many points.
     fn len(&self) -> usize;

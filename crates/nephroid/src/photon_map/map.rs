@@ -2,10 +2,13 @@ use std::f32::consts::PI;
 
 use rayon::prelude::*;
 
-use super::grid_tree::GridTree;
+use super::grid_tree::{BlockVisitor, GridTree};
 use super::index::PhotonIndex;
-use super::payload::Payload;
+use super::payload::{Payload, PayloadBlock};
 use super::photon::{Photon, Photons};
+use crate::bvh::{LANES, Lanes, Simd, Work};
+use crate::color::Rgb;
+use crate::math::Vec3;
 
 /// The default of the largest radius, in radii that hold the photons wanted at the map's mean
 /// density: a place with a quarter of it still finds them all. Larger ones blur the dark places and
@@ -16,7 +19,7 @@ const DEFAULT_MAX_RADIUS: f32 = 2.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotonMap<I = GridTree> {
     index: I,
-    payloads: Vec<Payload>,
+    payloads: Vec<PayloadBlock>,
     emitted: u64,
 }
 
@@ -25,20 +28,20 @@ impl<I: PhotonIndex> PhotonMap<I> {
     ///
     /// Positions must be finite. Panics with 2³² photons or more.
     pub fn build(photons: Photons) -> Self {
-        Self::build_ordered(photons).0
+        let (index, payloads) = I::build_with(photons.stored(), arranged(&photons));
+        Self { index, payloads: blocks(&payloads, |p| *p), emitted: photons.emitted() }
     }
 
     /// As [`Self::build`]; also returns, for each place, the number in the pass of the photon there.
     pub fn build_ordered(photons: Photons) -> (Self, Vec<u32>) {
-        let (all, emitted) = (photons.as_slice(), photons.emitted());
-        let (index, order) = I::build(all.len(), |i| all[i].position);
-        let share = (1.0 / emitted.max(1) as f64) as f32;
-        let payload = |number: &u32| {
-            let photon = &all[*number as usize];
-            Payload::new(&Photon { power: photon.power * share, ..*photon }, *number)
+        let arranged = arranged(&photons);
+        let with_number = |i| {
+            let (position, payload) = arranged(i);
+            (position, (payload, i as u32))
         };
-        let payloads = order.par_iter().map(payload).collect();
-        (Self { index, payloads, emitted }, order)
+        let (index, items) = I::build_with(photons.stored(), with_number);
+        let payloads = blocks(&items, |(payload, _)| *payload);
+        (Self { index, payloads, emitted: photons.emitted() }, items.iter().map(|(_, i)| *i).collect())
     }
 
     /// Where the photons are.
@@ -48,12 +51,12 @@ impl<I: PhotonIndex> PhotonMap<I> {
 
     /// How many photons it holds. Nothing is ever divided by this.
     pub fn len(&self) -> usize {
-        self.payloads.len()
+        self.index.len()
     }
 
     /// Whether it holds none.
     pub fn is_empty(&self) -> bool {
-        self.payloads.is_empty()
+        self.index.is_empty()
     }
 
     /// Paths emitted to make it, including those that stored nothing.
@@ -66,12 +69,12 @@ impl<I: PhotonIndex> PhotonMap<I> {
     /// power have eight bits, rounded up or down by chance so that means are exact.
     #[inline(always)]
     pub fn photon(&self, place: u32) -> Photon {
-        self.payloads[place as usize].decode(self.index.position(place))
+        self.payload(place).decode(self.index.position(place))
     }
 
     #[inline(always)]
-    pub(super) fn payload(&self, place: u32) -> &Payload {
-        &self.payloads[place as usize]
+    pub(super) fn payload(&self, place: u32) -> Payload {
+        self.payloads[place as usize / LANES].get(place as usize % LANES)
     }
 
     /// Bytes of heap memory.
@@ -80,7 +83,32 @@ impl<I: PhotonIndex> PhotonMap<I> {
     }
 }
 
+fn blocks<T: Sync>(items: &[T], payload: impl Fn(&T) -> Payload + Sync) -> Vec<PayloadBlock> {
+    items.par_chunks(LANES).map(|items| PayloadBlock::new(items.iter().map(&payload))).collect()
+}
+
+/// What becomes of each photon of a pass: its place and all else about it.
+fn arranged(photons: &Photons) -> impl Fn(usize) -> (Vec3, Payload) + Sync {
+    let share = (1.0 / photons.emitted().max(1) as f64) as f32;
+    move |i| {
+        let photon = &photons.as_slice()[i];
+        (photon.position, Payload::new(&Photon { power: photon.power * share, ..*photon }, i as u32))
+    }
+}
+
 impl PhotonMap<GridTree> {
+    /// The power of all photons within a radius, whatever the surface they lie on: eight are added at a
+    /// time, in an order that the map and the query alone decide.
+    pub fn power_within(&self, center: Vec3, radius: f32) -> Rgb {
+        self.power_within_by(Simd::detect(), center, radius)
+    }
+
+    fn power_within_by(&self, simd: Simd, center: Vec3, radius: f32) -> Rgb {
+        let sums = simd.run(PowerWithin { map: self, center, radius_sq: radius * radius });
+        let [r, g, b] = sums.map(|lanes| lanes.iter().sum());
+        Rgb { r, g, b }
+    }
+
     /// The radius of a disc with `k` photons at the mean density over [`GridTree::covered_area`]; 0 if
     /// there are no photons or all lie on a line along an axis.
     pub fn typical_radius(&self, k: u32) -> f32 {
@@ -100,11 +128,43 @@ impl PhotonMap<GridTree> {
     }
 }
 
+/// See [`PhotonMap::power_within`].
+struct PowerWithin<'a> {
+    map: &'a PhotonMap,
+    center: Vec3,
+    radius_sq: f32,
+}
+
+impl Work for PowerWithin<'_> {
+    type Output = [[f32; LANES]; 3];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let zero = L::splat(0.0);
+        let mut sum = Sum { payloads: &self.map.payloads, sums: [zero; 3] };
+        self.map.index.visit_blocks::<L, _>(self.center, self.radius_sq, &mut sum);
+        let [r, g, b] = sum.sums;
+        [r.store(), g.store(), b.store()]
+    }
+}
+
+/// Adds up powers.
+struct Sum<'a, L> {
+    payloads: &'a [PayloadBlock],
+    sums: [L; 3],
+}
+
+impl<L: Lanes> BlockVisitor<L> for Sum<'_, L> {
+    #[inline(always)]
+    fn visit(&mut self, number: usize, _: L, mask: L) {
+        let [r, g, b] = self.payloads[number].powers(mask);
+        self.sums = [self.sums[0].plus(r), self.sums[1].plus(g), self.sums[2].plus(b)];
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::Rgb;
-    use crate::math::Vec3;
     use crate::photon_map::BruteForce;
     use crate::photon_map::testing::{Rng, photon_at};
 
@@ -192,6 +252,41 @@ mod tests {
         for (what, photons) in clouds {
             let per_photon = map(photons).memory_bytes() as f32 / 2e4;
             assert!(per_photon <= 40.0, "{what}: {per_photon}");
+        }
+    }
+
+    /// Powers are small whole numbers, so that sums are exact in any order.
+    #[test]
+    fn power_within_a_radius_is_that_of_the_photons_found_there() {
+        let mut rng = Rng::new(5);
+        let mut cloud = |n: usize, place: &dyn Fn(Vec3) -> Vec3| -> PhotonMap {
+            let power = |i: usize| Rgb { r: (i % 256) as f32, g: (i % 7) as f32, b: 128.0 };
+            map((0..n)
+                .map(|i| Photon { power: power(i), ..photon_at(place(rng.point()), Vec3::Z) })
+                .collect())
+        };
+        let maps = [
+            cloud(0, &|p| p),
+            cloud(3, &|p| p),
+            cloud(3000, &|p| p),
+            cloud(3001, &|p| p.with_y(0.5)),
+            cloud(1000, &|_| Vec3::splat(0.5)),
+            cloud(2000, &|p| if p.x < 0.5 { p * 1e-3 } else { Vec3::ONE - p * 1e-4 }),
+        ];
+        let mut rng = Rng::new(6);
+        for map in &maps {
+            let places = (0..map.len() as u32).step_by(97).map(|place| map.photon(place).position);
+            let centers: Vec<_> = (0..50).map(|_| rng.point() * 1.5 - 0.25).chain(places).collect();
+            for center in centers {
+                for radius in [0.0, 1e-4, 0.03, 0.2, 1.0, f32::INFINITY, f32::NAN] {
+                    let mut expected = Rgb::BLACK;
+                    let add = |place, _| expected += map.photon(place).power;
+                    map.index().for_each_within(center, radius * radius, add);
+                    for simd in [Simd::detect(), Simd::Portable] {
+                        assert_eq!(map.power_within_by(simd, center, radius), expected, "{center} {radius}");
+                    }
+                }
+            }
         }
     }
 

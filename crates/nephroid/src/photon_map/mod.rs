@@ -22,7 +22,7 @@ mod testing;
 pub use brute_force::BruteForce;
 pub use estimate::{Bandwidth, Gathered, Query, gather};
 pub use grid_tree::GridTree;
-pub use index::{NearestList, Neighbor, PhotonIndex};
+pub use index::{Item, NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;
 pub use map::PhotonMap;
 pub use photon::{Photon, Photons};

@@ -1,4 +1,5 @@
 use super::photon::Photon;
+use crate::bvh::{LANES, Lanes};
 use crate::color::Rgb;
 use crate::math::Vec3;
 use crate::sampling::{Key, Stream};
@@ -13,8 +14,8 @@ use crate::sampling::{Key, Stream};
 ///   always to the nearest, a light whose photons all carry the same power would come out up to 0.4 %
 ///   too bright or too dark.
 /// - Lights from 65 535 on have that number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(16))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub(super) struct Payload {
     normal: [i16; 2],
     depth: u16,
@@ -22,6 +23,59 @@ pub(super) struct Payload {
     wi: [i16; 2],
     mantissas: [u8; 3],
     exponent: u8,
+}
+
+/// What is kept of eight photons, side by side: one instruction can work on all of them. Beyond the last
+/// photon are zeros.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub(super) struct PayloadBlock {
+    /// From the lowest byte: three mantissas and the exponent.
+    powers: [u32; LANES],
+    normals: [[i16; 2]; LANES],
+    depths: [u16; LANES],
+    lights: [u16; LANES],
+    wis: [[i16; 2]; LANES],
+}
+
+impl PayloadBlock {
+    /// Of at most eight photons.
+    pub fn new(payloads: impl Iterator<Item = Payload>) -> Self {
+        let mut block = Self::default();
+        for (lane, payload) in payloads.enumerate().take(LANES) {
+            let ([r, g, b], e) = (payload.mantissas, payload.exponent);
+            block.powers[lane] = u32::from_le_bytes([r, g, b, e]);
+            block.normals[lane] = payload.normal;
+            block.depths[lane] = payload.depth;
+            block.lights[lane] = payload.light;
+            block.wis[lane] = payload.wi;
+        }
+        block
+    }
+
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Payload {
+        let [r, g, b, exponent] = self.powers[lane].to_le_bytes();
+        Payload {
+            normal: self.normals[lane],
+            depth: self.depths[lane],
+            light: self.lights[lane],
+            wi: self.wis[lane],
+            mantissas: [r, g, b],
+            exponent,
+        }
+    }
+
+    /// Powers in the lanes of a mask, and black in the others.
+    #[inline(always)]
+    pub fn powers<L: Lanes>(&self, mask: L) -> [L; 3] {
+        let scale = L::from_exponent(&self.powers, BIAS).and(mask);
+        [
+            L::from_byte::<0>(&self.powers).times(scale),
+            L::from_byte::<1>(&self.powers).times(scale),
+            L::from_byte::<2>(&self.powers).times(scale),
+        ]
+    }
 }
 
 /// The largest angle in radians between a direction and what is kept of it.
@@ -110,8 +164,9 @@ fn encode_direction(v: Vec3) -> [i16; 2] {
     } else {
         ((1.0 - p.y.abs()).copysign(p.x), (1.0 - p.x.abs()).copysign(p.y))
     };
-    // Saturates, and NaN is zero.
-    [x, y].map(|c| (c * STEPS).round() as i16)
+    // To the nearest: without a call, which `round` is where SSE4.1 may be missing. Saturates, and NaN is
+    // zero.
+    [x, y].map(|c| (c * STEPS + 0.5f32.copysign(c)) as i16)
 }
 
 /// The point of the octahedron, |x| + |y| + |z| = 1, that a point of the square stands for.
