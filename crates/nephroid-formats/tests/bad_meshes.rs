@@ -11,7 +11,7 @@ const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 #[track_caller]
 fn obj(bytes: impl AsRef<[u8]>, expected: &str) {
     let bytes = bytes.as_ref();
-    let error = read_obj(bytes, PLAIN).unwrap_err().to_string();
+    let error = read_obj(bytes, PLAIN).expect_err("it must be refused").to_string();
     assert_eq!(error, expected, "\n{}", String::from_utf8_lossy(bytes));
 }
 
@@ -24,7 +24,7 @@ fn obj_with(more: &str, expected: &str) {
 #[track_caller]
 fn ply(bytes: impl AsRef<[u8]>, expected: &str) {
     let bytes = bytes.as_ref();
-    let error = read_ply(bytes, PLAIN).unwrap_err().to_string();
+    let error = read_ply(bytes, PLAIN).expect_err("it must be refused").to_string();
     assert_eq!(error, expected, "\n{}", String::from_utf8_lossy(bytes));
 }
 

@@ -130,12 +130,27 @@ pub fn gather<I: PhotonIndex>(
 /// How many of the photons found lie before a gap: a ring much larger than the disc within, and not one
 /// photon in it. There the surface ends, and what follows lies on another that happens to look the same
 /// way, such as the next ball. In uniform light i photons are followed by a disc a times as large, empty
-/// but for them, with the chance a^-i; a gap is what has a chance below one in 4⁸ = 65 536.
+/// but for them, with the chance a^-i; a gap is what has a chance below one in 4¹² = 17 million, for a
+/// picture asks millions of times, and each gap that is none makes a white speck.
 fn before_a_gap(found: &NearestList) -> usize {
     /// The ratio of the areas that makes a gap after so many photons, at most the last.
-    const GAPS: [f32; 9] = [f32::INFINITY, f32::INFINITY, f32::INFINITY, 40.4, 16.0, 9.2, 6.4, 4.9, 4.0];
+    const GAPS: [f32; 13] = [
+        f32::INFINITY,
+        f32::INFINITY,
+        f32::INFINITY,
+        256.0,
+        64.0,
+        27.9,
+        16.0,
+        10.8,
+        8.0,
+        6.35,
+        5.28,
+        4.54,
+        4.0,
+    ];
     let dist_sq = |i: usize| found.get(i).map_or(0.0, |n| n.dist_sq);
-    let ends = |&i: &usize| dist_sq(i) > GAPS[i.min(8)] * dist_sq(i - 1);
+    let ends = |&i: &usize| dist_sq(i) > GAPS[i.min(12)] * dist_sq(i - 1);
     (ENOUGH..found.len()).find(ends).unwrap_or(found.len())
 }
 

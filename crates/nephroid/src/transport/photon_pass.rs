@@ -207,19 +207,18 @@ pub(super) fn photon_pass_with<H: Default, T: Send>(
     record: impl Fn(&mut H, u64, Photon) -> T + Sync,
 ) -> Option<Stored<T>> {
     let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
+    let job = |map, paths, key| Job { world, settings, map, paths, key, work: &work };
     let global_key = Key::new(seed, iteration, Stream::GlobalPhotons);
     let ([global, _], ledger) =
-        emit(world, settings, MapKind::Global, plan.global.paths, global_key, &work, &record, |kind| {
-            match kind {
-                PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
-                PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
-                PhotonKind::Caustic => (None, Next::Continue),
-            }
+        emit(&job(MapKind::Global, plan.global.paths, global_key), &record, |kind| match kind {
+            PhotonKind::Global | PhotonKind::Afterglow => (Some(0), Next::Continue),
+            PhotonKind::Direct => (extras.direct.then_some(0), Next::Continue),
+            PhotonKind::Caustic => (None, Next::Continue),
         })?;
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
     let beyond = if extras.afterglow { Next::Continue } else { Next::Stop };
     let ([caustic, afterglow], _) =
-        emit(world, settings, MapKind::Caustic, plan.caustic.paths, caustic_key, &work, &record, |kind| {
+        emit(&job(MapKind::Caustic, plan.caustic.paths, caustic_key), &record, |kind| {
             match kind {
                 PhotonKind::Caustic => (Some(0), beyond),
                 PhotonKind::Afterglow => (Some(1), Next::Stop),
@@ -230,20 +229,25 @@ pub(super) fn photon_pass_with<H: Default, T: Send>(
     Some(Stored { global, caustic, afterglow, ledger })
 }
 
-/// Emits paths and stores their photons in two lists, as `keep` says.
-fn emit<H: Default, T: Send>(
-    world: &World,
-    settings: &WalkSettings,
+/// Paths to emit for a map.
+struct Job<'a> {
+    world: &'a World,
+    settings: &'a WalkSettings,
     map: MapKind,
     paths: u64,
     key: Key,
-    work: &Work<'_>,
+    work: &'a Work<'a>,
+}
+
+/// Emits paths and stores their photons in two lists, as `keep` says.
+fn emit<H: Default, T: Send>(
+    job: &Job<'_>,
     record: &(impl Fn(&mut H, u64, Photon) -> T + Sync),
     keep: impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync,
 ) -> Option<([Vec<T>; 2], Ledger)> {
     let mut photons = [Vec::new(), Vec::new()];
-    let mut ledger = Ledger::new(world.light_count());
-    let chunks = paths.div_ceil(CHUNK);
+    let mut ledger = Ledger::new(job.world.light_count());
+    let chunks = job.paths.div_ceil(CHUNK);
     let mut join = |traced: Vec<([Vec<T>; 2], Ledger)>| {
         for (stored, books) in traced {
             for (all, mut more) in photons.iter_mut().zip(stored) {
@@ -258,15 +262,15 @@ fn emit<H: Default, T: Send>(
             (first..(first + BATCH as u64).min(chunks))
                 .into_par_iter()
                 .map(|chunk| {
-                    let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
-                    trace(world, settings, map, range, key, work, record, &keep)
+                    let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(job.paths);
+                    trace(job, range, record, &keep)
                 })
                 .collect()
         };
         // A batch is joined while the next is traced.
         let joined = std::mem::take(&mut before);
         (before, ()) = rayon::join(trace_batch, || join(joined));
-        if work.cancelled() {
+        if job.work.cancelled() {
             return None;
         }
     }
@@ -276,15 +280,12 @@ fn emit<H: Default, T: Send>(
 
 /// Traces a range of paths; none if the observer cancelled.
 fn trace<H: Default, T>(
-    world: &World,
-    settings: &WalkSettings,
-    map: MapKind,
+    job: &Job<'_>,
     paths: Range<u64>,
-    key: Key,
-    work: &Work<'_>,
     record: &impl Fn(&mut H, u64, Photon) -> T,
     keep: &(impl Fn(PhotonKind) -> (Option<usize>, Next) + Sync),
 ) -> ([Vec<T>; 2], Ledger) {
+    let &Job { world, settings, map, key, work, .. } = job;
     let mut stored = [Vec::new(), Vec::new()];
     let mut ledger = Ledger::new(world.light_count());
     if work.cancelled() {
