@@ -11,10 +11,10 @@ use nephroid_formats::vfs::MemoryFiles;
 fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(target);
     let read = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.unwrap().path();
-        (path.display().to_string(), std::fs::read(path).unwrap())
+        let path = entry.expect("the folder can be read").path();
+        (path.display().to_string(), std::fs::read(path).expect("a seed can be read"))
     };
-    std::fs::read_dir(folder).unwrap().map(read).collect()
+    std::fs::read_dir(folder).expect("there are seeds").map(read).collect()
 }
 
 #[test]
