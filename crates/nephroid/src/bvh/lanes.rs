@@ -23,6 +23,8 @@ pub(crate) trait Lanes: Copy {
     fn lt(self, other: Self) -> u32;
     fn le(self, other: Self) -> u32;
     fn eq(self, other: Self) -> u32;
+    /// Has something brought from memory that will be asked for soon, and does not wait for it.
+    fn prefetch<T>(what: &T);
 }
 
 /// Something to be done with either kind of lanes.
@@ -140,6 +142,8 @@ impl Lanes for [f32; LANES] {
     fn eq(self, other: Self) -> u32 {
         bits(|i| self[i] == other[i])
     }
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }
 
 /// The one place with `unsafe`: the default build is for every x86-64, and users do not pass
@@ -150,6 +154,8 @@ mod avx2 {
     use std::arch::x86_64::*;
 
     use super::{LANES, Lanes, Work};
+
+    const CACHE_LINE: usize = 64;
 
     /// Proof that the machine has AVX2: only [`detect`] makes it.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -223,6 +229,14 @@ mod avx2 {
             larger: _mm256_max_ps, smaller: _mm256_min_ps
         );
         compare!(lt: _CMP_LT_OQ, le: _CMP_LE_OQ, eq: _CMP_EQ_OQ);
+        #[inline(always)]
+        fn prefetch<T>(what: &T) {
+            let start = std::ptr::from_ref(what).cast::<i8>();
+            for at in (0..size_of::<T>()).step_by(CACHE_LINE) {
+                // SAFETY: nothing is read, so any address will do.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(at)) };
+            }
+        }
     }
 }
 

@@ -58,9 +58,24 @@ pub(crate) trait Visitor {
     /// Takes the kind and number of a leaf and the end of the ray, which it may bring nearer; ends the
     /// traversal by returning true.
     fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool;
+
+    /// Has a leaf brought from memory that may be visited soon.
+    fn prefetch(&self, kind: Kind, number: usize);
 }
 
 impl Tree {
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, child: Child, visitor: &impl Visitor) {
+        match child.unpack() {
+            (Some(kind), number) => visitor.prefetch(kind, number),
+            (None, number) => {
+                if let Some(node) = self.nodes.get(number) {
+                    L::prefetch(node);
+                }
+            }
+        }
+    }
+
     /// Visits the leaves whose boxes the ray meets, near ones first unless `ANY` leaf may come first.
     /// Returns whether the visitor ended the traversal.
     #[inline(always)]
@@ -100,6 +115,7 @@ impl Tree {
                         while mask != 0 {
                             let lane = mask.ilog2() as usize % LANES;
                             mask ^= 1 << lane;
+                            self.prefetch::<L>(node.children[lane], visitor);
                             stack[held] = entry(0.0, node.children[lane]);
                             held += 1;
                         }
@@ -111,6 +127,7 @@ impl Tree {
                     while mask != 0 {
                         let lane = mask.trailing_zeros() as usize % LANES;
                         mask &= mask - 1;
+                        self.prefetch::<L>(node.children[lane], visitor);
                         let mut other = entry(near[lane], node.children[lane]);
                         if other < nearest {
                             std::mem::swap(&mut other, &mut nearest);
@@ -164,6 +181,8 @@ mod tests {
             self.1.extend(&self.0[leaf]);
             false
         }
+
+        fn prefetch(&self, _: Kind, _: usize) {}
     }
 
     impl Work for Visited<'_> {

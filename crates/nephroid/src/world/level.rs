@@ -158,6 +158,15 @@ impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
             },
         }
     }
+
+    #[inline(always)]
+    fn prefetch(&self, kind: Kind, number: usize) {
+        if kind == Kind::Triangles
+            && let Some(block) = self.level.triangles.get(number)
+        {
+            L::prefetch(block);
+        }
+    }
 }
 
 /// Who asks a [`Level`].
