@@ -1,8 +1,6 @@
+use super::stack::Stack;
 use super::{Child, Kind, LANES, Lanes, Node, Tree, splat3};
 use crate::math::{Ray, Vec3, gamma};
-
-/// Entries of the stack. Trees that need more are built otherwise.
-pub(super) const STACK: usize = 128;
 
 /// What widens the far end of an interval of distances by more than their rounding, so that nothing is
 /// lost (Ize 2013, *Robust BVH Ray Traversal*, JCGT 2(2)).
@@ -90,8 +88,7 @@ impl Tree {
             return false;
         }
         let slabs = Slabs::<L>::new(ray);
-        let mut stack = [0u64; STACK];
-        let mut held = 0;
+        let mut stack = Stack::new();
         let mut at = self.root;
         loop {
             let (kind, number) = at.unpack();
@@ -116,13 +113,12 @@ impl Tree {
                             let lane = mask.ilog2() as usize % LANES;
                             mask ^= 1 << lane;
                             self.prefetch::<L>(node.children[lane], visitor);
-                            stack[held] = entry(0.0, node.children[lane]);
-                            held += 1;
+                            stack.push(entry(0.0, node.children[lane]));
                         }
                         continue;
                     }
                     let near = near.store();
-                    let bottom = held;
+                    let bottom = stack.held();
                     let mut nearest = entry(near[first], node.children[first]);
                     while mask != 0 {
                         let lane = mask.trailing_zeros() as usize % LANES;
@@ -132,25 +128,14 @@ impl Tree {
                         if other < nearest {
                             std::mem::swap(&mut other, &mut nearest);
                         }
-                        // Farther ones lie deeper.
-                        let mut place = held;
-                        while place > bottom && stack[place - 1] < other {
-                            stack[place] = stack[place - 1];
-                            place -= 1;
-                        }
-                        stack[place] = other;
-                        held += 1;
+                        stack.insert(bottom, other);
                     }
                     at = Child(nearest as u32);
                     continue;
                 }
             }
             loop {
-                if held == 0 {
-                    return false;
-                }
-                held -= 1;
-                let next = stack[held];
+                let Some(next) = stack.pop() else { return false };
                 if f32::from_bits((next >> 32) as u32) <= *t_max * SLACK {
                     at = Child(next as u32);
                     break;
@@ -162,7 +147,7 @@ impl Tree {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Simd, Work};
+    use super::super::{Boxes, Simd, Work};
     use super::*;
     use crate::math::{Bounds, warp};
     use crate::sampling::{Key, Sampler, Sequence, Stream};
@@ -211,6 +196,16 @@ mod tests {
             (near, far) = (near.max(x.min(y)), far.min(x.max(y)));
         }
         near <= far
+    }
+
+    impl Boxes for [Bounds] {
+        fn count(&self) -> u32 {
+            self.len() as u32
+        }
+
+        fn get(&self, number: u32) -> Bounds {
+            self[number as usize]
+        }
     }
 
     fn check(boxes: &[Bounds], kind: Kind) {
