@@ -146,7 +146,7 @@ impl Lanes for [f32; LANES] {
     fn prefetch<T>(_: &T) {}
 }
 
-/// The one place with `unsafe`: the default build is for every x86-64, and users do not pass
+/// The default build is for every x86-64, and users do not pass
 /// `target-cpu`.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "AVX2 where the machine has it")]

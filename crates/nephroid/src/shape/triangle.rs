@@ -20,6 +20,9 @@ pub(crate) struct ShearedRay {
 }
 
 impl ShearedRay {
+    /// For searches that meet no triangle: making a sheared ray takes as long as testing a box.
+    pub const UNUSED: Self = Self { axes: [0, 1, 2], shear: Vec3::ZERO };
+
     #[inline]
     pub fn new(direction: Vec3) -> Self {
         let a = direction.abs();

@@ -123,7 +123,8 @@ impl Level {
         t_max: &mut f32,
         searcher: &mut impl Searcher,
     ) -> bool {
-        let sheared = ShearedRay::new(ray.direction);
+        let no_triangles = self.triangles.is_empty();
+        let sheared = if no_triangles { ShearedRay::UNUSED } else { ShearedRay::new(ray.direction) };
         let lanes = ShearedLanes::<L>::new(ray, &sheared);
         for &p in &self.infinite {
             if single::<ANY>(primitives, p, ray, &sheared, t_max, searcher) {
