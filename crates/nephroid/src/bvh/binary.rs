@@ -44,7 +44,7 @@ impl Binary {
         let scaled: Vec<Aabb> = (0..boxes.count()).map(|i| aabb(boxes.get(i))).collect();
         let indices = (0..boxes.count()).collect();
         let mut tree =
-            PlocBuilder::new().build(PlocSearchDistance::Low, &scaled, indices, SortPrecision::U64, 2);
+            PlocBuilder::new().build(PlocSearchDistance::Low, &scaled, indices, SortPrecision::U64, 3);
         drop(scaled);
         ReinsertionOptimizer::default().run(&mut tree, REINSERTION, Some(ROUNDS.to_vec()));
 

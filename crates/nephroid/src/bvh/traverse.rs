@@ -107,7 +107,7 @@ impl Tree {
                         continue;
                     }
                     if ANY {
-                        // Large boxes come first in a node: what is in them stops the ray most likely.
+                        // Large boxes and leaves come first in a node: what is in them stops the ray soonest.
                         at = node.children[first];
                         while mask != 0 {
                             let lane = mask.ilog2() as usize % LANES;
