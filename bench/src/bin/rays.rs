@@ -1,6 +1,7 @@
 //! Rays a second beside Embree: a closed box with a bumpy ball, as one mesh.
 //!
-//! `EMBREE_LIB=… cargo run --release --manifest-path bench/Cargo.toml --bin rays`
+//! `EMBREE_LIB=… cargo run --release --manifest-path bench/Cargo.toml --bin rays`, with
+//! `-- small` for the smaller of both alone.
 
 use std::hint::black_box;
 
@@ -17,12 +18,16 @@ use nephroid::world::World;
 use nephroid_bench::embree::{Embree, EmbreeScene, Mode, NONE, RayHit};
 use nephroid_bench::{cpu_time, rounds};
 
+/// Rows and columns of the balls.
+const SIZES: [(u32, u32); 2] = [(132, 266), (500, 1_001)];
+
 const SIDE: u32 = 512;
 const ROUNDS: usize = 5;
 
 fn main() -> Result<(), String> {
     let embree = Embree::load()?;
-    for (rows, columns) in [(132, 266), (500, 1_001)] {
+    let sizes: &[_] = if std::env::args().any(|a| a == "small") { &SIZES[..1] } else { &SIZES };
+    for &(rows, columns) in sizes {
         compare(&embree, &box_and_ball(rows, columns));
     }
     cornell();

@@ -2,27 +2,31 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
+use super::Boxes;
 use crate::math::Bounds;
 
 /// A binary tree with one item to a leaf.
 pub(super) struct Binary {
-    /// The root first; a parent before its children.
+    /// The root first, then what is left of it, then what is right, and so on in each.
     pub nodes: Vec<BinaryNode>,
 }
 
+#[derive(Clone, Copy)]
 pub(super) struct BinaryNode {
-    pub bounds: Bounds,
     /// Its surface area in units in which the whole is about 1.
     pub area: f32,
-    pub content: Content,
+    /// Its number with [`LEAF`] set if it is an item, else the right child. The left one comes next.
+    link: u32,
 }
 
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// The children, both further on in the list.
+    /// The children.
     Inner([u32; 2]),
     Item(u32),
 }
+
+const LEAF: u32 = 1 << 31;
 
 /// Part of the nodes that are looked at again for a better place. More costs time when building and
 /// saves little when tracing.
@@ -34,83 +38,87 @@ const ROUNDS: [f32; 6] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0, 1.0 / 17.0, 1.0 
 impl Binary {
     /// By locally ordered clustering, then reinsertion, as `obvhs` does them on one thread. There must
     /// be at least one box, and none may be empty.
-    pub fn clustered(boxes: &[Bounds]) -> Self {
+    pub fn clustered(boxes: &(impl Boxes + ?Sized)) -> Self {
         let scale = unit_scale(boxes);
-        let aabb = |b: &Bounds| Aabb::new((b.min * scale).into(), (b.max * scale).into());
-        let scaled: Vec<Aabb> = boxes.iter().map(aabb).collect();
-        let indices = (0..boxes.len() as u32).collect();
+        let aabb = |b: Bounds| Aabb::new((b.min * scale).into(), (b.max * scale).into());
+        let scaled: Vec<Aabb> = (0..boxes.count()).map(|i| aabb(boxes.get(i))).collect();
+        let indices = (0..boxes.count()).collect();
         let mut tree =
-            PlocBuilder::new().build(PlocSearchDistance::Low, &scaled, indices, SortPrecision::U64, 2);
+            PlocBuilder::new().build(PlocSearchDistance::Low, &scaled, indices, SortPrecision::U64, 3);
+        drop(scaled);
         ReinsertionOptimizer::default().run(&mut tree, REINSERTION, Some(ROUNDS.to_vec()));
 
-        let mut nodes = Vec::with_capacity(tree.nodes.len());
-        // Where the parent waits for the number of this child.
-        let mut waiting = vec![(0u32, None::<(usize, usize)>)];
-        while let Some((old, parent)) = waiting.pop() {
-            let at = nodes.len();
-            if let Some((parent, side)) = parent
-                && let BinaryNode { content: Content::Inner(children), .. } = &mut nodes[parent]
-            {
-                children[side] = at as u32;
-            }
+        let mut nodes: Vec<BinaryNode> = Vec::with_capacity(tree.nodes.len());
+        let mut next = Some(0u32);
+        // Nodes whose right child is to come, with its place in `tree`.
+        let mut waiting: Vec<(u32, u32)> = Vec::new();
+        while let Some(old) = next {
             let node = &tree.nodes[old as usize];
+            let area = 2.0 * node.aabb().half_area();
             if node.is_leaf() {
-                let item = tree.primitive_indices[node.first_index as usize];
-                nodes.push(BinaryNode::new(boxes[item as usize], scale, Content::Item(item)));
+                nodes.push(BinaryNode::item(area, tree.primitive_indices[node.first_index as usize]));
+                next = waiting.pop().map(|(parent, right)| {
+                    nodes[parent as usize].link = nodes.len() as u32;
+                    right
+                });
             } else {
-                let area = 2.0 * node.aabb().half_area();
-                nodes.push(BinaryNode { bounds: Bounds::EMPTY, area, content: Content::Inner([0; 2]) });
-                waiting.push((node.first_index + 1, Some((at, 1))));
-                waiting.push((node.first_index, Some((at, 0))));
-            }
-        }
-        // From the boxes themselves, as scaled ones may have been rounded.
-        for at in (0..nodes.len()).rev() {
-            if let Content::Inner([left, right]) = nodes[at].content {
-                nodes[at].bounds = nodes[left as usize].bounds.union(nodes[right as usize].bounds);
+                waiting.push((nodes.len() as u32, node.first_index + 1));
+                nodes.push(BinaryNode { area, link: 0 });
+                next = Some(node.first_index);
             }
         }
         Self { nodes }
     }
 
     /// In halves by count: never deep, and no more.
-    pub fn halved(boxes: &[Bounds]) -> Self {
-        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut nodes = Vec::with_capacity(2 * boxes.len());
+    pub fn halved(boxes: &(impl Boxes + ?Sized)) -> Self {
+        let mut items: Vec<u32> = (0..boxes.count()).collect();
+        let mut nodes = Vec::with_capacity(2 * items.len());
         halve(boxes, unit_scale(boxes), &mut items, &mut nodes);
         Self { nodes }
     }
-}
 
-fn halve(boxes: &[Bounds], scale: f32, items: &mut [u32], nodes: &mut Vec<BinaryNode>) -> u32 {
-    let at = nodes.len();
-    let bounds = items.iter().fold(Bounds::EMPTY, |b, &i| b.union(boxes[i as usize]));
-    nodes.push(BinaryNode::new(bounds, scale, Content::Item(items[0])));
-    if items.len() > 1 {
-        let e = bounds.extent();
-        let axis = (0..3).max_by(|&a, &b| e[a].total_cmp(&e[b])).unwrap_or(0);
-        let center = |i: u32| boxes[i as usize].min[axis] + boxes[i as usize].max[axis];
-        let middle = items.len() / 2;
-        items.select_nth_unstable_by(middle, |&a, &b| center(a).total_cmp(&center(b)).then(a.cmp(&b)));
-        let (left, right) = items.split_at_mut(middle);
-        let children = [halve(boxes, scale, left, nodes), halve(boxes, scale, right, nodes)];
-        nodes[at].content = Content::Inner(children);
+    #[inline]
+    pub fn content(&self, at: u32) -> Content {
+        let link = self.nodes[at as usize].link;
+        if link & LEAF != 0 { Content::Item(link ^ LEAF) } else { Content::Inner([at + 1, link]) }
     }
-    at as u32
+
+    #[inline]
+    pub fn area(&self, at: u32) -> f32 {
+        self.nodes[at as usize].area
+    }
 }
 
 impl BinaryNode {
-    fn new(bounds: Bounds, scale: f32, content: Content) -> Self {
-        let area = Bounds { min: bounds.min * scale, max: bounds.max * scale }.area();
-        Self { bounds, area, content }
+    fn item(area: f32, item: u32) -> Self {
+        Self { area, link: item | LEAF }
+    }
+}
+
+fn halve(boxes: &(impl Boxes + ?Sized), scale: f32, items: &mut [u32], nodes: &mut Vec<BinaryNode>) {
+    let at = nodes.len();
+    let bounds = items.iter().fold(Bounds::EMPTY, |b, &i| b.union(boxes.get(i)));
+    let area = Bounds { min: bounds.min * scale, max: bounds.max * scale }.area();
+    nodes.push(BinaryNode::item(area, items[0]));
+    if items.len() > 1 {
+        let e = bounds.extent();
+        let axis = (0..3).max_by(|&a, &b| e[a].total_cmp(&e[b])).unwrap_or(0);
+        let center = |i: u32| boxes.get(i).min[axis] + boxes.get(i).max[axis];
+        let middle = items.len() / 2;
+        items.select_nth_unstable_by(middle, |&a, &b| center(a).total_cmp(&center(b)).then(a.cmp(&b)));
+        let (left, right) = items.split_at_mut(middle);
+        halve(boxes, scale, left, nodes);
+        nodes[at].link = nodes.len() as u32;
+        halve(boxes, scale, right, nodes);
     }
 }
 
 /// A power of two that brings coordinates to about 1: areas then neither vanish nor overflow, and the
 /// same scene in other units has the same tree.
-fn unit_scale(boxes: &[Bounds]) -> f32 {
-    let reach =
-        boxes.iter().fold(0.0f32, |r, b| r.max(b.min.abs().max_element()).max(b.max.abs().max_element()));
+fn unit_scale(boxes: &(impl Boxes + ?Sized)) -> f32 {
+    let all = (0..boxes.count()).fold(Bounds::EMPTY, |all, i| all.union(boxes.get(i)));
+    let reach = all.min.abs().max_element().max(all.max.abs().max_element());
     // The exponent of the inverse, kept within what a normal number can have.
     let exponent = 127 - ((reach.to_bits() >> 23) as i32 - 127);
     f32::from_bits((exponent.clamp(1, 254) as u32) << 23)

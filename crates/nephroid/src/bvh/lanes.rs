@@ -31,6 +31,8 @@ pub(crate) trait Lanes: Copy {
     fn from_exponent(words: &[u32; LANES], less: u32) -> Self;
     /// A byte of each word, as a number.
     fn from_byte<const BYTE: i32>(words: &[u32; LANES]) -> Self;
+    /// Has something brought from memory that will be asked for soon, and does not wait for it.
+    fn prefetch<T>(what: &T);
 }
 
 /// Something to be done with either kind of lanes.
@@ -164,9 +166,11 @@ impl Lanes for [f32; LANES] {
     fn from_byte<const BYTE: i32>(words: &[u32; LANES]) -> Self {
         each(|i| f32::from((words[i] >> (8 * BYTE)) as u8))
     }
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }
 
-/// The one place with `unsafe`: the default build is for every x86-64, and users do not pass
+/// The default build is for every x86-64, and users do not pass
 /// `target-cpu`.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "AVX2 where the machine has it")]
@@ -174,6 +178,8 @@ mod avx2 {
     use std::arch::x86_64::*;
 
     use super::{LANES, Lanes, Work};
+
+    const CACHE_LINE: usize = 64;
 
     /// Proof that the machine has AVX2 and can count bits, which all that have the one do: only [`detect`]
     /// makes it.
@@ -280,6 +286,14 @@ mod avx2 {
             larger: _mm256_max_ps, smaller: _mm256_min_ps, and: _mm256_and_ps
         );
         compare!(lt: _CMP_LT_OQ, le: _CMP_LE_OQ, eq: _CMP_EQ_OQ);
+        #[inline(always)]
+        fn prefetch<T>(what: &T) {
+            let start = std::ptr::from_ref(what).cast::<i8>();
+            for at in (0..size_of::<T>()).step_by(CACHE_LINE) {
+                // SAFETY: nothing is read, so any address will do.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(at)) };
+            }
+        }
     }
 }
 

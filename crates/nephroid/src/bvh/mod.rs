@@ -6,7 +6,11 @@
 mod binary;
 mod build;
 mod lanes;
+#[expect(unsafe_code, reason = "a stack that is not filled in advance")]
+mod stack;
 mod traverse;
+
+use crate::math::Bounds;
 
 pub(crate) use lanes::{LANES, Lanes, Simd, Work, splat3};
 pub(crate) use traverse::Visitor;
@@ -25,6 +29,12 @@ struct Node {
     /// For each axis the lower sides, then the upper.
     sides: [[[f32; LANES]; 2]; 3],
     children: [Child; LANES],
+}
+
+/// What a tree is built over: boxes, counted from zero.
+pub(crate) trait Boxes {
+    fn count(&self) -> u32;
+    fn get(&self, number: u32) -> Bounds;
 }
 
 /// What items can be kept together in a leaf.

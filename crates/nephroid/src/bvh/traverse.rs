@@ -1,8 +1,6 @@
+use super::stack::Stack;
 use super::{Child, Kind, LANES, Lanes, Node, Tree, splat3};
 use crate::math::{Ray, Vec3, gamma};
-
-/// Entries of the stack. Trees that need more are built otherwise.
-pub(super) const STACK: usize = 128;
 
 /// What widens the far end of an interval of distances by more than their rounding, so that nothing is
 /// lost (Ize 2013, *Robust BVH Ray Traversal*, JCGT 2(2)).
@@ -58,9 +56,24 @@ pub(crate) trait Visitor {
     /// Takes the kind and number of a leaf and the end of the ray, which it may bring nearer; ends the
     /// traversal by returning true.
     fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool;
+
+    /// Has a leaf brought from memory that may be visited soon.
+    fn prefetch(&self, kind: Kind, number: usize);
 }
 
 impl Tree {
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, child: Child, visitor: &impl Visitor) {
+        match child.unpack() {
+            (Some(kind), number) => visitor.prefetch(kind, number),
+            (None, number) => {
+                if let Some(node) = self.nodes.get(number) {
+                    L::prefetch(node);
+                }
+            }
+        }
+    }
+
     /// Visits the leaves whose boxes the ray meets, near ones first unless `ANY` leaf may come first.
     /// Returns whether the visitor ended the traversal.
     #[inline(always)]
@@ -75,8 +88,7 @@ impl Tree {
             return false;
         }
         let slabs = Slabs::<L>::new(ray);
-        let mut stack = [0u64; STACK];
-        let mut held = 0;
+        let mut stack = Stack::new();
         let mut at = self.root;
         loop {
             let (kind, number) = at.unpack();
@@ -95,45 +107,35 @@ impl Tree {
                         continue;
                     }
                     if ANY {
-                        // Large boxes come first in a node: what is in them stops the ray most likely.
+                        // Large boxes and leaves come first in a node: what is in them stops the ray soonest.
                         at = node.children[first];
                         while mask != 0 {
                             let lane = mask.ilog2() as usize % LANES;
                             mask ^= 1 << lane;
-                            stack[held] = entry(0.0, node.children[lane]);
-                            held += 1;
+                            self.prefetch::<L>(node.children[lane], visitor);
+                            stack.push(entry(0.0, node.children[lane]));
                         }
                         continue;
                     }
                     let near = near.store();
-                    let bottom = held;
+                    let bottom = stack.held();
                     let mut nearest = entry(near[first], node.children[first]);
                     while mask != 0 {
                         let lane = mask.trailing_zeros() as usize % LANES;
                         mask &= mask - 1;
+                        self.prefetch::<L>(node.children[lane], visitor);
                         let mut other = entry(near[lane], node.children[lane]);
                         if other < nearest {
                             std::mem::swap(&mut other, &mut nearest);
                         }
-                        // Farther ones lie deeper.
-                        let mut place = held;
-                        while place > bottom && stack[place - 1] < other {
-                            stack[place] = stack[place - 1];
-                            place -= 1;
-                        }
-                        stack[place] = other;
-                        held += 1;
+                        stack.insert(bottom, other);
                     }
                     at = Child(nearest as u32);
                     continue;
                 }
             }
             loop {
-                if held == 0 {
-                    return false;
-                }
-                held -= 1;
-                let next = stack[held];
+                let Some(next) = stack.pop() else { return false };
                 if f32::from_bits((next >> 32) as u32) <= *t_max * SLACK {
                     at = Child(next as u32);
                     break;
@@ -145,7 +147,7 @@ impl Tree {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Simd, Work};
+    use super::super::{Boxes, Simd, Work};
     use super::*;
     use crate::math::{Bounds, warp};
     use crate::sampling::{Key, Sampler, Sequence, Stream};
@@ -164,6 +166,8 @@ mod tests {
             self.1.extend(&self.0[leaf]);
             false
         }
+
+        fn prefetch(&self, _: Kind, _: usize) {}
     }
 
     impl Work for Visited<'_> {
@@ -192,6 +196,16 @@ mod tests {
             (near, far) = (near.max(x.min(y)), far.min(x.max(y)));
         }
         near <= far
+    }
+
+    impl Boxes for [Bounds] {
+        fn count(&self) -> u32 {
+            self.len() as u32
+        }
+
+        fn get(&self, number: u32) -> Bounds {
+            self[number as usize]
+        }
     }
 
     fn check(boxes: &[Bounds], kind: Kind) {

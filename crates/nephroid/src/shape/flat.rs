@@ -89,6 +89,7 @@ impl Flat {
         inside.then_some(Intersection { t, u: x, v: y })
     }
 
+    #[inline]
     pub fn surface(&self, hit: &Intersection) -> SurfacePoint {
         let (dx, dy) = (self.edge_x * hit.u, self.edge_y * hit.v);
         SurfacePoint {
@@ -130,6 +131,7 @@ impl Flat {
         self.surface(&Intersection { t: 0.0, u: p.x, v: p.y })
     }
 
+    #[inline]
     fn uv(&self, x: f32, y: f32) -> Vec2 {
         match self.region {
             Region::Square | Region::Plane => Vec2::new((x + 1.0) * 0.5, (y + 1.0) * 0.5),

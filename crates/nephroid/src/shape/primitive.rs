@@ -59,6 +59,7 @@ impl Primitive {
     }
 
     /// The surface at a hit.
+    #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Intersection, meshes: &[Mesh]) -> SurfacePoint {
         match self {
             Self::Sphere(s) => s.surface(ray, hit),

@@ -20,6 +20,9 @@ pub(crate) struct ShearedRay {
 }
 
 impl ShearedRay {
+    /// For searches that meet no triangle: making a sheared ray takes as long as testing a box.
+    pub const UNUSED: Self = Self { axes: [0, 1, 2], shear: Vec3::ZERO };
+
     #[inline]
     pub fn new(direction: Vec3) -> Self {
         let a = direction.abs();
@@ -72,15 +75,20 @@ impl Triangle {
             Vec3::new(p[kx] - s.x * p[kz], p[ky] - s.y * p[kz], p[kz])
         });
         let edge = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
+        let outside = |w: &[f32; 3]| w.iter().any(|&x| x < 0.0) && w.iter().any(|&x| x > 0.0);
         let mut w = [edge(q[2], q[1]), edge(q[0], q[2]), edge(q[1], q[0])];
+        // Rounding keeps signs, or makes zeros of them.
+        if outside(&w) {
+            return None;
+        }
         if w.contains(&0.0) {
             // On an edge single precision cannot tell the side; double precision can.
             let exact =
                 |a: Vec3, b: Vec3| (f64::from(a.x) * f64::from(b.y) - f64::from(a.y) * f64::from(b.x)) as f32;
             w = [exact(q[2], q[1]), exact(q[0], q[2]), exact(q[1], q[0])];
-        }
-        if w.iter().any(|&x| x < 0.0) && w.iter().any(|&x| x > 0.0) {
-            return None;
+            if outside(&w) {
+                return None;
+            }
         }
         let determinant = w[0] + w[1] + w[2];
         if determinant == 0.0 {

@@ -112,11 +112,11 @@ impl TriangleBlock {
         let zero = L::splat(0.0);
         let least = w[0].smaller(w[1]).smaller(w[2]);
         let most = w[0].larger(w[1]).larger(w[2]);
-        let on_edge = w[0].eq(zero) | w[1].eq(zero) | w[2].eq(zero);
         let inside = zero.le(least) | most.le(zero);
-        if inside | on_edge == 0 {
+        if inside == 0 {
             return Hits::NONE;
         }
+        let on_edge = inside & (w[0].eq(zero) | w[1].eq(zero) | w[2].eq(zero));
         let determinant = w[0].plus(w[1]).plus(w[2]);
         let scaled =
             w[0].times(q[0][2]).plus(w[1].times(q[1][2])).plus(w[2].times(q[2][2])).times(lanes.shear[2]);

@@ -151,6 +151,7 @@ impl Parts {
         let mesh = &self.meshes[at as usize];
         let mut lamp = Vec::new();
         let mut sound = true;
+        pieces.finite.reserve(mesh.triangles.len());
         for index in 0..mesh.triangles.len() as u32 {
             let triangle = Triangle::new(mesh, at, index);
             if !triangle.is_proper() {

@@ -1,4 +1,4 @@
-use crate::bvh::{Kind, Lanes, Tree, Visitor};
+use crate::bvh::{Boxes, Kind, Lanes, Tree, Visitor};
 use crate::math::{Bounds, Ray};
 use crate::shape::{FlatBlock, Hits, Intersection, Mesh, Primitive, ShearedLanes, ShearedRay, TriangleBlock};
 
@@ -41,6 +41,17 @@ pub(super) struct Candidate {
     pub piece: Item,
 }
 
+impl Boxes for [(Bounds, Item)] {
+    fn count(&self) -> u32 {
+        self.len() as u32
+    }
+
+    #[inline]
+    fn get(&self, number: u32) -> Bounds {
+        self[number as usize].0
+    }
+}
+
 impl Level {
     /// Over items with bounds, and primitives without any.
     pub fn new<'a>(
@@ -49,8 +60,9 @@ impl Level {
         primitives: &'a [Primitive],
         mesh: impl Fn(u32) -> &'a Mesh,
     ) -> Self {
-        let boxes: Vec<Bounds> = items.iter().map(|(bounds, _)| *bounds).collect();
         let (mut triangles, mut flats, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        // Most leaves hold more.
+        triangles.reserve(items.len() / 5);
         let kind = |i: u32| match items[i as usize].1 {
             Item::Triangle { .. } => Kind::Triangles,
             Item::Other(Other::Primitive(p)) if matches!(primitives[p as usize], Primitive::Flat(_)) => {
@@ -58,7 +70,7 @@ impl Level {
             }
             Item::Other(_) => Kind::Other,
         };
-        let tree = Tree::build(&boxes, kind, |kind, list| {
+        let tree = Tree::build(items, kind, |kind, list| {
             let members = list.iter().map(|&i| items[i as usize].1);
             let number = match kind {
                 Kind::Triangles => {
@@ -89,7 +101,7 @@ impl Level {
             number as u32 - 1
         });
         triangles.shrink_to_fit();
-        let bounds = boxes.iter().fold(Bounds::EMPTY, |all, &b| all.union(b));
+        let bounds = items.iter().fold(Bounds::EMPTY, |all, &(b, _)| all.union(b));
         Self { tree, triangles, flats, others, infinite, bounds }
     }
 
@@ -111,7 +123,8 @@ impl Level {
         t_max: &mut f32,
         searcher: &mut impl Searcher,
     ) -> bool {
-        let sheared = ShearedRay::new(ray.direction);
+        let no_triangles = self.triangles.is_empty();
+        let sheared = if no_triangles { ShearedRay::UNUSED } else { ShearedRay::new(ray.direction) };
         let lanes = ShearedLanes::<L>::new(ray, &sheared);
         for &p in &self.infinite {
             if single::<ANY>(primitives, p, ray, &sheared, t_max, searcher) {
@@ -158,6 +171,15 @@ impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
             },
         }
     }
+
+    #[inline(always)]
+    fn prefetch(&self, kind: Kind, number: usize) {
+        if kind == Kind::Triangles
+            && let Some(block) = self.level.triangles.get(number)
+        {
+            L::prefetch(block);
+        }
+    }
 }
 
 /// Who asks a [`Level`].
@@ -178,7 +200,8 @@ fn take<const ANY: bool>(
     piece: impl Fn(usize) -> Item,
 ) -> bool {
     while let Some((i, Intersection { t, u, v })) = hits.next() {
-        if t < *t_max && searcher.offer(Candidate { t, u, v, piece: piece(i) }) {
+        // The first that counts is the last.
+        if (ANY || t < *t_max) && searcher.offer(Candidate { t, u, v, piece: piece(i) }) {
             *t_max = t;
             if ANY {
                 return true;

@@ -170,6 +170,7 @@ impl World {
     }
 
     /// The surface at a hit of this ray.
+    #[inline]
     pub fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
         let point = self.scenery.surface(ray, hit);
         if self.surfaces[hit.shape as usize].flipped { point.flipped() } else { point }

@@ -38,6 +38,7 @@ impl Scenery {
     }
 
     /// The surface at a hit of a ray, without regard to flipped normals.
+    #[inline]
     pub fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
         match hit.instance {
             None => self.local_surface(ray, hit),
@@ -48,6 +49,7 @@ impl Scenery {
         }
     }
 
+    #[inline]
     fn local_surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
         let at = Intersection { t: hit.t, u: hit.u, v: hit.v };
         match self.mesh_of[hit.shape as usize] {

@@ -139,10 +139,13 @@ struct Solid {
 fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) -> Vec<Solid> {
     let solid = |shape: usize, material| {
         let inside = Material::unmasked(&scene.materials, material);
-        let (items, planes) = items(scenery, shape);
+        if scene.materials[inside] == Material::Null {
+            return None;
+        }
         let lamp = emitter_of_shape.get(shape).copied().flatten();
         let specular = is_dirac(&scene.materials, material);
-        (scene.materials[inside] != Material::Null).then_some(Solid { lamp, specular, items, planes })
+        let (items, planes) = items(scenery, shape, specular);
+        Some(Solid { lamp, specular, items, planes })
     };
     let mut solids: Vec<_> =
         scene.shapes.iter().enumerate().filter_map(|(i, shape)| solid(i, shape.material)).collect();
@@ -165,9 +168,14 @@ fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) ->
 }
 
 /// What a shape is made of in its own space, the scene's or that of its group, and what of it is infinite.
-fn items(scenery: &Scenery, shape: usize) -> (Vec<Item>, Vec<Primitive>) {
+/// Of a mesh all triangles only where asked for.
+fn items(scenery: &Scenery, shape: usize, apart: bool) -> (Vec<Item>, Vec<Primitive>) {
     if let Some(mesh) = scenery.mesh_of[shape] {
         let mesh = &scenery.meshes[mesh as usize];
+        if !apart {
+            let corners = || mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]);
+            return (vec![Item::of_points(corners)], Vec::new());
+        }
         let corners = |triangle: &[u32; 3]| Bounds::of(triangle.map(|i| mesh.positions[i as usize]));
         return (mesh.triangles.iter().map(corners).map(Item::of_box).collect(), Vec::new());
     }
@@ -228,6 +236,13 @@ impl Item {
     fn of_box(bounds: Bounds) -> Self {
         let (center, radius) = bounds.bounding_sphere();
         Self { center, radius, bounds }
+    }
+
+    /// Around points, which are gone through twice.
+    fn of_points<P: Iterator<Item = Vec3>>(points: impl Fn() -> P) -> Self {
+        let around = Self::of_box(Bounds::of(points()));
+        let farthest_sq = points().map(|p| p.distance_squared(around.center)).fold(0.0, f32::max);
+        Self { radius: around.radius.min(farthest_sq.sqrt()), ..around }
     }
 
     /// Around at least one.
