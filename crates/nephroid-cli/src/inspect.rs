@@ -105,8 +105,9 @@ impl Inspected<'_> {
     /// The name and the material of a shape.
     pub fn shape(&self, shape: u32) -> (&str, &'static str) {
         let scene = self.world.scene();
-        let shape = &scene.shapes[shape as usize];
-        (&shape.name, crate::info::material(&scene.materials[shape.material]))
+        scene.all_shapes().nth(shape as usize).map_or(("", ""), |shape| {
+            (shape.name.as_str(), crate::info::material(&scene.materials[shape.material]))
+        })
     }
 
     /// The name of a light.

@@ -95,7 +95,7 @@ impl Report<'_> {
                 continue;
             }
             messages.warning(&format!(
-                "the {name} map has {} photons instead of {}: few paths lead there, and --emit-max ended the emission",
+                "the {name} map has {} photons instead of {}: few paths lead there, and the emission was limited",
                 grouped(map.photons_per_map() as u64),
                 grouped(map.wanted)
             ));

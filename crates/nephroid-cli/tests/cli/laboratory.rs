@@ -241,3 +241,39 @@ fn inspect_refuses_what_is_not_there() {
     );
     refused(&[], "--pixel <X,Y>");
 }
+
+/// Shapes of groups are counted behind those of the scene, and have no place among them.
+#[test]
+fn scenes_of_instances_masks_and_null_surfaces_can_be_looked_into() {
+    let dir = Dir::new();
+    let scene = r#"<scene version="3.0.0">
+            <sensor type="perspective">
+                <transform name="to_world"><lookat origin="0, 0, 6" target="0, 0, 0" up="0, 1, 0"/></transform>
+                <film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="24"/></film>
+            </sensor>
+            <emitter type="point"><point name="position" x="1" y="2" z="3"/></emitter>
+            <shape type="shapegroup" id="pair">
+                <shape type="sphere" id="veil"><bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="dielectric"/></bsdf></shape>
+                <shape type="cube" id="ghost"><bsdf type="null"/></shape>
+            </shape>
+            <shape type="instance"><ref id="pair"/></shape>
+            <shape type="rectangle" id="wall">
+                <transform name="to_world"><scale value="3"/><translate z="-2"/></transform>
+                <bsdf type="diffuse"/>
+            </shape>
+        </scene>"#;
+    std::fs::write(dir.path("s.xml"), scene).unwrap();
+    let few = ["--photons", "300", "--caustic-photons", "300"];
+    dir.run(&[&["photons", "s.xml", "-o", "p.png", "-o", "p.csv"][..], &few].concat()).ends_with(0);
+    let report = dir
+        .run(&[&["inspect", "s.xml", "--pixel", "12,12", "--json"][..], &few].concat())
+        .ends_with(0)
+        .json();
+    assert!(report.to_string().contains("veil"), "{report}");
+    dir.run(
+        &[&["render", "s.xml", "--aov", "albedo,global,count", "--spp", "2", "-o", "a.exr"][..], &few]
+            .concat(),
+    )
+    .ends_with(0);
+    assert!(channels(&dir, "a.exr").iter().any(|(name, _)| name.contains("albedo")));
+}

@@ -1,7 +1,8 @@
 use std::mem::MaybeUninit;
 
-/// How many children a [`Stack`] holds. Trees that need more are built otherwise.
-pub(super) const DEPTH: usize = 128;
+/// How many children a [`Stack`] holds. Trees that need more are built otherwise: in halves, where fewer than
+/// 2³² items make 32 binary levels at most, at each of which up to 7 children wait.
+pub(super) const DEPTH: usize = 7 * 32;
 
 /// Children that a ray has still to enter. Not filled in advance, which took a tenth of a ray's time.
 pub(super) struct Stack {

@@ -180,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Whether the ray meets a box, in double precision; `None` where that is too close to call.
+    /// Whether the ray meets a box, in double precision.
     fn meets(b: &Bounds, ray: &Ray) -> bool {
         let (mut near, mut far) = (0.0f64, f64::INFINITY);
         for axis in 0..3 {

@@ -46,7 +46,7 @@ pub struct SurfaceMet {
     pub normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// The index of the shape in the scene.
+    /// The index of the shape: first come those of the scene, then those of its groups.
     pub shape: u32,
     /// Whether all its lobes are Dirac ones.
     pub specular: bool,

@@ -133,9 +133,10 @@ fn is_hidden(world: &World, camera: Vec3, photon: Vec3) -> bool {
 
 /// Whether photons show through a surface.
 fn is_clear(world: &World, hit: &Hit) -> bool {
-    let scene = world.scene();
-    let material = &scene.materials[scene.shapes[hit.shape as usize].material];
-    matches!(material, Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null)
+    matches!(
+        world.material_of(hit.shape),
+        Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null
+    )
 }
 
 /// Fills the pixels whose centres a dot covers, and at least the one that it lies in.

@@ -53,7 +53,7 @@ impl Targets {
         let inverse = ray.direction.recip();
         self.balls.iter().any(|ball| {
             let (a, b) = ((ball.bounds.min - ray.origin) * inverse, (ball.bounds.max - ray.origin) * inverse);
-            // A ray within a face gives NaN, which `max` and `min` pass over.
+            // A ray within a face, which gives NaN, may miss the box; what the box is around lies inside its margin.
             let near = a.x.min(b.x).max(a.y.min(b.y)).max(a.z.min(b.z)).max(0.0);
             let far = a.x.max(b.x).min(a.y.max(b.y)).min(a.z.max(b.z));
             near <= far * (1.0 + 1e-5)
@@ -109,7 +109,9 @@ impl Cones {
         let mut cones = Self { list: [Cone::default(); MAX_BALLS], len: 0, sum: 0.0 };
         for ball in targets.seen_by(convex) {
             let to = ball.center - center;
-            let (reach, distance) = (ball.radius + radius, to.length());
+            // Directions far away err by more than the margin of a small ball.
+            let distance = to.length();
+            let reach = ball.radius + radius + 2.0 * f32::EPSILON * distance;
             let sin = reach / distance;
             // In the middle there is no axis; close by, the cone is all but half of the sphere.
             if distance == 0.0 || sin >= 0.999 {

@@ -37,3 +37,10 @@ pub struct Scene {
     /// Lights without a surface.
     pub lights: Vec<Light>,
 }
+
+impl Scene {
+    /// All shapes in the order in which hits count them: those of the scene, then those of its groups.
+    pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes))
+    }
+}

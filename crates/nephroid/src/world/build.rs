@@ -35,7 +35,8 @@ impl World {
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
-        let surfaces: Vec<Surfaced> = all_shapes(&scene)
+        let surfaces: Vec<Surfaced> = scene
+            .all_shapes()
             .enumerate()
             .map(|(i, s)| {
                 let inside = Material::unmasked(&scene.materials, s.material);
@@ -65,11 +66,6 @@ impl World {
             aims,
         })
     }
-}
-
-/// The shapes of the scene, then those of its groups: the order in which hits count them.
-fn all_shapes(scene: &Scene) -> impl Iterator<Item = &Shape> {
-    scene.shapes.iter().chain(scene.groups.iter().flat_map(|group| &group.shapes))
 }
 
 /// All surfaces, and the pieces of each shape that emits.

@@ -150,7 +150,7 @@ impl World {
 
     /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.
     pub(crate) fn has_dirac_surfaces(&self) -> bool {
-        self.surfaces.iter().any(|s| is_dirac(&self.scene.materials, s.material))
+        self.aims.specular
     }
 
     /// The first surface a ray meets, null ones included.
@@ -199,6 +199,12 @@ impl World {
             }
         };
         !self.occluded(&ray)
+    }
+
+    /// What a shape is made of, counted as in [`Hit::shape`]; of a masked one what is inside.
+    pub(crate) fn material_of(&self, shape: u32) -> &Material {
+        let material = self.surfaces[shape as usize].material;
+        &self.scene.materials[Material::unmasked(&self.scene.materials, material)]
     }
 
     /// How the surface scatters, seen from the side of `wo`.

@@ -24,6 +24,8 @@ const BY_POWER: f64 = 0.05;
 /// The aims of both maps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Aims {
+    /// Whether anything to be seen is specular: without, there are no caustics.
+    pub specular: bool,
     /// At all surfaces; `None` if one of them is infinite.
     pub global: Option<Aim>,
     /// At specular surfaces, for a path that meets another one first makes no caustic; `None` if one of
@@ -60,6 +62,7 @@ impl Aims {
         let lookup = Lookup { meshes: &scenery.meshes, textures: &scene.textures };
         let aim = |targets, selective| Aim::new(emitters, lookup, targets, selective);
         Self {
+            specular: solids.iter().any(|solid| solid.specular),
             global: targets_of_all(&solids).and_then(|targets| aim(targets, false)),
             caustic: specular_targets(&solids).and_then(|targets| aim(targets, true)),
             planes: solids.into_iter().flat_map(|solid| solid.planes).collect(),

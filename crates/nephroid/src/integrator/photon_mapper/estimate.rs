@@ -4,6 +4,7 @@ mod gather_rays;
 
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
+use super::guide::Facing;
 use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport};
@@ -14,8 +15,8 @@ use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
 use crate::world::{World, leave};
 
-/// Surfaces that both reflect and refract, along a camera path, at which both lobes are followed, before one is chosen by
-/// chance: the reflection in a glass ball then shows no noise, at up to four times the rays.
+/// Surfaces that both reflect and refract, along a camera path, at which both lobes are followed, before one
+/// is chosen by chance: the reflection in a glass ball then shows no noise, at up to four times the rays.
 const SPLITS: u32 = 2;
 
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
@@ -238,7 +239,7 @@ impl<'a> PhotonMapper<'a> {
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
             let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.neighbors);
-            let wanted = branch.share * self.weight_of_gathering(&bsdf, guide.as_ref(), beside);
+            let wanted = self.weight_of_gathering(&bsdf, guide.as_ref(), beside, branch.share);
             let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
             let key = sample.key.with(branch.number);
             let first = u64::from(sample.index / self.stride) * u64::from(most);

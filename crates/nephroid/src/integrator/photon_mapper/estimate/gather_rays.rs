@@ -2,9 +2,7 @@
 
 use std::f32::consts::PI;
 
-use super::super::config::DirectSource;
-use super::super::guide::Facing;
-use super::{PhotonMapper, Tools, Vertex, scatter};
+use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, scatter};
 use crate::color::Rgb;
 use crate::integrator::{LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, Transport};
@@ -20,17 +18,23 @@ const WEIGHT_WHERE_DARK: f32 = 0.25;
 const MAX_NEAR_SURFACES: u32 = 8;
 
 impl PhotonMapper<'_> {
-    /// The part of the gather rays that the light they bring is worth beside other light, as far as that is
-    /// known before: all where it is half of the light or more.
-    pub(super) fn weight_of_gathering(&self, bsdf: &Bsdf, guide: Option<&Facing<'_>>, beside: Rgb) -> f32 {
+    /// The part of the gather rays that are worth sending, as far as that is known before: all where
+    /// indirect light is half of all or more, and on one way of a split path its `share` of that.
+    pub(super) fn weight_of_gathering(
+        &self,
+        bsdf: &Bsdf,
+        guide: Option<&Facing<'_>>,
+        beside: Rgb,
+        share: f32,
+    ) -> f32 {
         if !self.config.spares_gather_rays() {
             return 1.0;
         }
-        let Some(guide) = guide else { return WEIGHT_WHERE_DARK };
+        let Some(guide) = guide else { return share * WEIGHT_WHERE_DARK };
         let albedo = bsdf.diffuse_albedo() + bsdf.glossy_albedo();
         let gathered = (albedo * guide.irradiance).mean() / PI;
         let light = gathered + beside.mean();
-        if light > 0.0 { (2.0 * gathered / light).min(1.0) } else { 1.0 }
+        share * if light > 0.0 { (2.0 * gathered / light).min(1.0) } else { 1.0 }
     }
 
     /// What a gather ray brings from where it lands: all of the light, or from near by what no ray that
