@@ -94,8 +94,12 @@ impl Report<'_> {
                 messages.note(&format!("the {name} map is empty: none of {paths} paths leads there"));
                 continue;
             }
+            let why = match map.plan.expected_photons {
+                0 => "and trial paths found none",
+                _ => "and --emit-max ended the emission",
+            };
             messages.warning(&format!(
-                "the {name} map has {} photons instead of {}: few paths lead there, and the emission was limited",
+                "the {name} map has {} photons instead of {}: few paths lead there, {why}",
                 grouped(map.photons_per_map() as u64),
                 grouped(map.wanted)
             ));
