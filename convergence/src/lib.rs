@@ -48,7 +48,7 @@ impl Builder {
             Projection::Perspective { fov_deg, fov_axis: FovAxis::X, principal_point_offset: Vec2::ZERO };
         Self {
             scene: Scene {
-                camera: Camera { to_world, projection },
+                camera: Camera { to_world, projection, medium: None },
                 film: FilmSettings { width: side, height: side, crop: None::<Crop>, filter: Filter::Box },
                 textures: Textures::default(),
                 materials: Arena::default(),
@@ -57,6 +57,7 @@ impl Builder {
                 groups: Arena::default(),
                 instances: Vec::new(),
                 lights: Vec::new(),
+                media: nephroid::medium::Media::default(),
             },
         }
     }
@@ -109,6 +110,7 @@ impl Builder {
             material,
             emission: None,
             flip_normals: false,
+            boundary: nephroid::medium::Boundary::default(),
         });
         self.scene.shapes.last_mut().expect("just pushed")
     }
@@ -127,7 +129,7 @@ impl Builder {
     /// Adds a light without a surface.
     pub fn light(&mut self, kind: LightKind) {
         let name = format!("light {}", self.scene.lights.len());
-        self.scene.lights.push(Light { name, kind });
+        self.scene.lights.push(Light { name, kind, medium: None });
     }
 
     /// Adds a point light of a given intensity in W/sr.

@@ -35,7 +35,7 @@ fn room(scale: f64, place: Transform) -> World {
         Projection::Perspective { fov_deg: 45.0, fov_axis: FovAxis::X, principal_point_offset: Vec2::ZERO };
     let mut b = Builder {
         scene: Scene {
-            camera: Camera { to_world: eye.then(place), projection },
+            camera: Camera { to_world: eye.then(place), projection, medium: None },
             film: FilmSettings { width: 20, height: 20, crop: None, filter: Filter::Tent { radius: 1.0 } },
             textures: Textures::default(),
             materials: Arena::default(),
@@ -44,6 +44,7 @@ fn room(scale: f64, place: Transform) -> World {
             groups: Arena::default(),
             instances: Vec::new(),
             lights: Vec::new(),
+            media: nephroid::medium::Media::default(),
         },
     };
     shapes(&mut b);

@@ -104,15 +104,33 @@ fn world(mesh: Option<Mesh>, material: impl FnOnce(&mut Textures) -> Material) -
     let material = materials.push(material(&mut textures));
     let geometry = mesh.map_or(Geometry::Rectangle, |mesh| Geometry::Mesh(meshes.push(mesh)));
     let to_world = Transform::IDENTITY;
-    let shape =
-        Shape { name: "shape".into(), geometry, to_world, material, emission: None, flip_normals: false };
+    let shape = Shape {
+        name: "shape".into(),
+        geometry,
+        to_world,
+        material,
+        emission: None,
+        flip_normals: false,
+        boundary: nephroid::medium::Boundary::default(),
+    };
     let kind = LightKind::Point { position: Vec3::Z * 5.0, intensity: Rgb::WHITE };
     let film = FilmSettings { width: 4, height: 4, crop: None, filter: Filter::Box };
-    let (shapes, lights) = (vec![shape], vec![Light { name: "lamp".into(), kind }]);
-    let camera = Camera { to_world, projection: Projection::Orthographic };
+    let (shapes, lights) = (vec![shape], vec![Light { name: "lamp".into(), kind, medium: None }]);
+    let camera = Camera { to_world, projection: Projection::Orthographic, medium: None };
     let (groups, instances) = (Arena::default(), Vec::new());
-    World::new(Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights })
-        .expect("it is sound")
+    World::new(Scene {
+        camera,
+        film,
+        textures,
+        materials,
+        meshes,
+        shapes,
+        groups,
+        instances,
+        lights,
+        media: nephroid::medium::Media::default(),
+    })
+    .expect("it is sound")
 }
 
 /// About 70 000 triangles around the origin, at distances from 0.9 to 1.1.

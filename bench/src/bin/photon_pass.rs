@@ -29,10 +29,7 @@ fn main() {
 
 /// Photons stored per CPU second, in millions, and the wall time of one thread over twice that of two.
 fn measure(world: &World, extras: Extras) -> (f64, f64) {
-    let plan = PhotonPlan {
-        global: MapPlan { paths: PATHS, ..MapPlan::default() },
-        ..PhotonPlan::default()
-    };
+    let plan = PhotonPlan { global: MapPlan { paths: PATHS, ..MapPlan::default() }, ..PhotonPlan::default() };
     let pools = [1, 2].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads"));
     let run = |pool: &rayon::ThreadPool| {
         let (mut stored, start) = (0, Instant::now());

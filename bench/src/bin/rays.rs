@@ -136,7 +136,15 @@ fn cornell() {
     let material = material.unwrap_or_else(|| scene.materials.iter_handles().next().expect("one").0);
     let mut push = |geometry, to_world| {
         let name = String::new();
-        scene.shapes.push(Shape { name, geometry, to_world, material, emission: None, flip_normals: false });
+        scene.shapes.push(Shape {
+            name,
+            geometry,
+            to_world,
+            material,
+            emission: None,
+            flip_normals: false,
+            boundary: nephroid::medium::Boundary::default(),
+        });
     };
     use nephroid::math::DVec3;
     let turns = [(DVec3::X, 0.0), (DVec3::X, 90.0), (DVec3::X, -90.0), (DVec3::Y, 90.0), (DVec3::Y, -90.0)];
@@ -300,10 +308,11 @@ fn scene(list: Vec<Mesh>) -> Scene {
             material,
             emission: None,
             flip_normals: false,
+            boundary: nephroid::medium::Boundary::default(),
         })
         .collect();
     Scene {
-        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic },
+        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic, medium: None },
         film: FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box },
         textures,
         materials,
@@ -312,5 +321,6 @@ fn scene(list: Vec<Mesh>) -> Scene {
         groups: Arena::default(),
         instances: Vec::new(),
         lights: Vec::new(),
+        media: nephroid::medium::Media::default(),
     }
 }

@@ -1,8 +1,10 @@
 //! Cameras: from a point of the picture to a ray.
 
 use crate::film::FilmSettings;
+use crate::handle::Handle;
 use crate::math::real::tan;
 use crate::math::{Ray, Transform, Vec2, Vec3, warp};
+use crate::medium::Medium;
 
 /// Where the picture is taken from. In camera space `+z` looks ahead, `+x` points to the left of
 /// the picture and `+y` up.
@@ -12,6 +14,8 @@ pub struct Camera {
     pub to_world: Transform,
     /// How space is flattened.
     pub projection: Projection,
+    /// What it stands in, if that is to be given rather than found.
+    pub medium: Option<Handle<Medium>>,
 }
 
 /// How a camera flattens space.
@@ -146,7 +150,7 @@ mod tests {
     fn rays(projection: Projection, width: u32, height: u32) -> CameraRays {
         let to_world = Transform::look_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, DVec3::Y).unwrap();
         let film = FilmSettings { width, height, crop: None, filter: Filter::Box };
-        CameraRays::new(&Camera { to_world, projection }, &film)
+        CameraRays::new(&Camera { to_world, projection, medium: None }, &film)
     }
 
     fn perspective(fov_axis: FovAxis, offset: Vec2) -> Projection {

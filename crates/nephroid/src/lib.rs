@@ -9,18 +9,17 @@
 //! centre, the wall shines with a radiance of 1 everywhere.
 //!
 //! ```
-//! use nephroid::{camera::*, color::*, film::*, handle::*, integrator::*, light::*, material::*};
-//! use nephroid::{math::*, observer::*, scene::*, session::*, shape::*, texture::*, world::*};
-//! let (mut textures, mut materials, to_world) = (Textures::default(), Arena::default(), Transform::IDENTITY);
-//! let material = materials.push(Material::Diffuse { reflectance: textures.constant(Rgb::splat(0.5)) });
-//! let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 2.0 };
-//! let wall = Shape { name: "wall".into(), geometry, to_world, material, emission: None, flip_normals: true };
-//! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(4.0 * std::f32::consts::PI) };
-//! let (shapes, lights) = (vec![wall], vec![Light { name: "lamp".into(), kind }]);
+//! use nephroid::{camera::*, color::*, film::*, integrator::*, light::*, material::*, math::*, observer::*};
+//! use nephroid::{scene::*, session::*, shape::*, world::*};
 //! let film = FilmSettings { width: 16, height: 16, crop: None, filter: Filter::Box };
-//! let (meshes, groups, instances) = (Arena::default(), Arena::default(), Vec::new());
-//! let camera = Camera { to_world, projection: Projection::Orthographic };
-//! let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights };
+//! let (to_world, projection) = (Transform::IDENTITY, Projection::Orthographic);
+//! let mut scene = Scene::new(Camera { to_world, projection, medium: None }, film);
+//! let reflectance = scene.textures.constant(Rgb::splat(0.5));
+//! let material = scene.materials.push(Material::Diffuse { reflectance });
+//! let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 2.0 };
+//! scene.shapes.push(Shape { flip_normals: true, ..Shape::new("wall", geometry, material) });
+//! let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::splat(4.0 * std::f32::consts::PI) };
+//! scene.lights.push(Light { name: "lamp".into(), kind, medium: None });
 //! let world = World::new(scene).unwrap();
 //! let settings = RenderSettings { method: Method::default(), samples_per_pixel: 4, seed: 0 };
 //! let mut session = Session::new(&world, settings, &Silent);
@@ -32,7 +31,7 @@
 //!
 //! | for | see |
 //! |---|---|
-//! | what a scene consists of | [`scene`], [`shape`], [`material`], [`light`], [`texture`], [`camera`] |
+//! | what a scene consists of | [`scene`], [`shape`], [`material`], [`medium`], [`light`], [`texture`], [`camera`] |
 //! | how to render, and how well | [`session`], [`integrator::Method`], [`integrator::PhotonMapperConfig`] |
 //! | watching and stopping a render | [`observer::Observer`] |
 //! | pictures, filters, tone mapping | [`film`] |
@@ -63,6 +62,7 @@ pub mod laboratory;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod medium;
 pub mod observer;
 pub mod photon_map;
 pub mod sampling;

@@ -44,7 +44,7 @@ impl<'t> Reader<'t> {
         plugin.finish();
         if let Some(kind) = kind {
             self.origins.lights.push(plugin.location().clone());
-            self.lights.push(Light { name: plugin.name(), kind });
+            self.lights.push(Light { name: plugin.name(), kind, medium: None });
         }
     }
 

@@ -157,7 +157,18 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let Reader { textures, materials, meshes, shapes, groups, instances, lights, mut origins, .. } = reader;
     origins.shapes.extend(reader.shapes_of_groups);
     let (camera, film) = (sensor.camera, sensor.film);
-    let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights };
+    let scene = Scene {
+        camera,
+        film,
+        textures,
+        materials,
+        meshes,
+        shapes,
+        groups,
+        instances,
+        lights,
+        media: nephroid::medium::Media::default(),
+    };
     let sample_count = sensor.sample_count;
     Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })
 }

@@ -59,7 +59,7 @@ impl<'t> Reader<'t> {
             self.left_out(&property.location, "the medium around the sensor");
         }
         plugin.finish();
-        Some(Sensor { camera: Camera { to_world, projection }, film, sample_count })
+        Some(Sensor { camera: Camera { to_world, projection, medium: None }, film, sample_count })
     }
 
     /// A perspective camera with a lens. As in Mitsuba, the lens must have a radius, and what is in focus

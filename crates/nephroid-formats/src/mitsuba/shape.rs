@@ -72,7 +72,15 @@ impl<'t> Reader<'t> {
         };
         plugin.finish();
         let name = plugin.name();
-        Some(Shape { name, geometry: geometry?, to_world, material: material?, emission, flip_normals })
+        Some(Shape {
+            name,
+            geometry: geometry?,
+            to_world,
+            material: material?,
+            emission,
+            flip_normals,
+            boundary: nephroid::medium::Boundary::default(),
+        })
     }
 
     fn sphere(&self, plugin: &Plugin<'t>) -> Option<Geometry> {

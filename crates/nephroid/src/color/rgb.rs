@@ -72,6 +72,12 @@ impl Rgb {
         0.212_6 * self.r + 0.715_2 * self.g + 0.072_2 * self.b
     }
 
+    /// Sum of the channels.
+    #[inline]
+    pub fn sum(self) -> f32 {
+        self.r + self.g + self.b
+    }
+
     /// Whether every channel is zero.
     #[inline]
     pub fn is_black(self) -> bool {
@@ -183,6 +189,15 @@ impl Div<f32> for Rgb {
     #[inline]
     fn div(self, k: f32) -> Self {
         self * (1.0 / k)
+    }
+}
+
+impl Div for Rgb {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
     }
 }
 

@@ -20,6 +20,7 @@ pub(crate) use spot::Spot;
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Transform, Vec3};
+use crate::medium::Medium;
 use crate::texture::{Image, Texture};
 
 /// A light without a surface, as a scene describes it.
@@ -29,6 +30,8 @@ pub struct Light {
     pub name: String,
     /// What it is.
     pub kind: LightKind,
+    /// What its light starts in, if that is to be given rather than found.
+    pub medium: Option<Handle<Medium>>,
 }
 
 /// The kinds of lights without a surface.

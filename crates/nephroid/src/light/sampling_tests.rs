@@ -27,7 +27,7 @@ fn empty() -> Scene {
     let projection =
         Projection::Perspective { fov_deg: 40.0, fov_axis: FovAxis::X, principal_point_offset: Vec2::ZERO };
     Scene {
-        camera: Camera { to_world: Transform::IDENTITY, projection },
+        camera: Camera { to_world: Transform::IDENTITY, projection, medium: None },
         film: FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box },
         textures: Textures::default(),
         materials: Arena::default(),
@@ -36,6 +36,7 @@ fn empty() -> Scene {
         groups: Arena::default(),
         instances: Vec::new(),
         lights: Vec::new(),
+        media: crate::medium::Media::default(),
     }
 }
 
@@ -53,7 +54,15 @@ fn lamp(geometry: Geometry, to_world: Transform, flip_normals: bool) -> World {
     let mesh = scene.meshes.push(pyramid);
     let geometry = if let Geometry::Mesh(_) = geometry { Geometry::Mesh(mesh) } else { geometry };
     let name = String::new();
-    scene.shapes.push(Shape { name, geometry, to_world, material, emission, flip_normals });
+    scene.shapes.push(Shape {
+        name,
+        geometry,
+        to_world,
+        material,
+        emission,
+        flip_normals,
+        boundary: crate::medium::Boundary::default(),
+    });
     World::new(scene).expect("a sound scene")
 }
 
@@ -114,7 +123,7 @@ fn sky(kind: LightKind, images: &[Image]) -> World {
     for image in images {
         scene.textures.images.push(image.clone());
     }
-    scene.lights.push(Light { name: String::new(), kind });
+    scene.lights.push(Light { name: String::new(), kind, medium: None });
     World::new(scene).expect("a sound scene")
 }
 

@@ -368,7 +368,7 @@ mod tests {
             principal_point_offset: Vec2::ZERO,
         };
         Scene {
-            camera: Camera { to_world: Transform::IDENTITY, projection },
+            camera: Camera { to_world: Transform::IDENTITY, projection, medium: None },
             film: FilmSettings { width: 4, height: 4, crop: None, filter: Filter::Box },
             textures: Textures::default(),
             materials: Arena::default(),
@@ -377,6 +377,7 @@ mod tests {
             groups: Arena::default(),
             instances: Vec::new(),
             lights: Vec::new(),
+            media: crate::medium::Media::default(),
         }
     }
 
@@ -397,6 +398,7 @@ mod tests {
             material,
             emission: Some(white),
             flip_normals: false,
+            boundary: crate::medium::Boundary::default(),
         };
         scene.shapes.push(shape);
         assert_eq!(
@@ -421,7 +423,7 @@ mod tests {
             beam_width_deg: 15.0,
             texture: Some(texture),
         };
-        scene.lights.push(Light { name: "spot".into(), kind });
+        scene.lights.push(Light { name: "spot".into(), kind, medium: None });
         assert_eq!(
             messages(&scene),
             [

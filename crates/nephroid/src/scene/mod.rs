@@ -11,6 +11,7 @@ use crate::film::FilmSettings;
 use crate::handle::Arena;
 use crate::light::Light;
 use crate::material::Material;
+use crate::medium::Media;
 use crate::shape::{Group, Instance, Mesh, Shape};
 use crate::texture::Textures;
 
@@ -26,6 +27,8 @@ pub struct Scene {
     pub textures: Textures,
     /// Materials.
     pub materials: Arena<Material>,
+    /// Participating media and their grids.
+    pub media: Media,
     /// Triangle meshes.
     pub meshes: Arena<Mesh>,
     /// Surfaces.
@@ -39,6 +42,22 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A scene with nothing in it.
+    pub fn new(camera: Camera, film: FilmSettings) -> Self {
+        Self {
+            camera,
+            film,
+            textures: Textures::default(),
+            materials: Arena::default(),
+            media: Media::default(),
+            meshes: Arena::default(),
+            shapes: Vec::new(),
+            groups: Arena::default(),
+            instances: Vec::new(),
+            lights: Vec::new(),
+        }
+    }
+
     /// All shapes in the order in which hits count them: those of the scene, then those of its groups.
     pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes))

@@ -19,6 +19,7 @@ pub(crate) use triangles::{Hits, ShearedLanes, TriangleBlock};
 use crate::handle::Handle;
 use crate::material::Material;
 use crate::math::{Transform, Vec2, Vec3};
+use crate::medium::Boundary;
 use crate::texture::Texture;
 
 /// A surface of the scene.
@@ -36,6 +37,23 @@ pub struct Shape {
     pub emission: Option<Handle<Texture>>,
     /// Turns the normal around.
     pub flip_normals: bool,
+    /// What it lies between.
+    pub boundary: Boundary,
+}
+
+impl Shape {
+    /// A surface in its own space that gives off no light and bounds no medium.
+    pub fn new(name: impl Into<String>, geometry: Geometry, material: Handle<Material>) -> Self {
+        Self {
+            name: name.into(),
+            geometry,
+            to_world: Transform::IDENTITY,
+            material,
+            emission: None,
+            flip_normals: false,
+            boundary: Boundary::default(),
+        }
+    }
 }
 
 /// Shapes that are stored once and shown by any number of [`Instance`]s.

@@ -114,7 +114,15 @@ mod tests {
         let mut textures = Textures::default();
         let reflectance = textures.constant(Rgb::WHITE);
         let material = Arena::default().push(Material::Diffuse { reflectance });
-        Shape { name: String::new(), geometry, to_world, material, emission: None, flip_normals: false }
+        Shape {
+            name: String::new(),
+            geometry,
+            to_world,
+            material,
+            emission: None,
+            flip_normals: false,
+            boundary: crate::medium::Boundary::default(),
+        }
     }
 
     fn pieces(shape: &Shape, meshes: &[Mesh]) -> Vec<Primitive> {

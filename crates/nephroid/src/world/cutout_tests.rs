@@ -33,7 +33,7 @@ fn world(
     opacity: impl Fn(&mut Textures) -> Handle<Texture>,
 ) -> World {
     let mut scene = Scene {
-        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic },
+        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic, medium: None },
         film: FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box },
         textures: Textures::default(),
         materials: Arena::default(),
@@ -42,6 +42,7 @@ fn world(
         lights: Vec::new(),
         groups: Arena::default(),
         instances: Vec::new(),
+        media: crate::medium::Media::default(),
     };
     let opacity = opacity(&mut scene.textures);
     let reflectance = scene.textures.constant(Rgb::splat(0.5));
@@ -58,6 +59,7 @@ fn world(
             material,
             emission: None,
             flip_normals: false,
+            boundary: crate::medium::Boundary::default(),
         });
     }
     World::new(scene).unwrap()

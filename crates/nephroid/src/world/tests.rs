@@ -18,7 +18,7 @@ fn empty() -> Scene {
     let mut materials = Arena::default();
     materials.push(Material::Diffuse { reflectance: textures.constant(Rgb::WHITE) });
     Scene {
-        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic },
+        camera: Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic, medium: None },
         film: FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box },
         textures,
         materials,
@@ -27,12 +27,21 @@ fn empty() -> Scene {
         groups: Arena::default(),
         instances: Vec::new(),
         lights: Vec::new(),
+        media: crate::medium::Media::default(),
     }
 }
 
 fn shape(scene: &Scene, geometry: Geometry, to_world: Transform) -> Shape {
     let material = scene.materials.iter_handles().next().unwrap().0;
-    Shape { name: String::new(), geometry, to_world, material, emission: None, flip_normals: false }
+    Shape {
+        name: String::new(),
+        geometry,
+        to_world,
+        material,
+        emission: None,
+        flip_normals: false,
+        boundary: crate::medium::Boundary::default(),
+    }
 }
 
 /// A closed, bumpy ball about the origin, of radius about 1 and `2·n·(n − 1)` triangles.
