@@ -17,6 +17,8 @@ use nephroid::integrator::{DirectSource, FinalGather, Method, PhotonMapperConfig
 use nephroid::light::{Light, LightKind};
 use nephroid::material::{Material, Metal};
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
+use nephroid::medium::Boundary;
+use nephroid::medium::Media;
 use nephroid::observer::Silent;
 use nephroid::photon_map::Kernel;
 use nephroid::scene::Scene;
@@ -57,7 +59,7 @@ impl Builder {
                 groups: Arena::default(),
                 instances: Vec::new(),
                 lights: Vec::new(),
-                media: nephroid::medium::Media::default(),
+                media: Media::default(),
             },
         }
     }
@@ -110,7 +112,7 @@ impl Builder {
             material,
             emission: None,
             flip_normals: false,
-            boundary: nephroid::medium::Boundary::default(),
+            boundary: Boundary::default(),
         });
         self.scene.shapes.last_mut().expect("just pushed")
     }
@@ -181,8 +183,8 @@ pub fn means(world: &World, method: &Method, samples_per_pixel: u32, seeds: Rang
 /// Never: nothing cancels it.
 pub fn photons(world: &World, settings: &WalkSettings, paths: u64, seed: u64) -> PhotonPass {
     let map = MapPlan { paths, ..MapPlan::default() };
-    let plan = PhotonPlan { global: map, caustic: map };
-    let extras = Extras { direct: true, afterglow: false };
+    let plan = PhotonPlan { global: map, caustic: map, ..PhotonPlan::default() };
+    let extras = Extras { direct: true, unseen: false };
     photon_pass(world, settings, &plan, extras, seed, 0, &Silent).expect("nothing cancels")
 }
 

@@ -12,6 +12,7 @@ use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, Photon
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
+use nephroid::medium::Media;
 use nephroid::scene::Scene;
 use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::{Image, Textures};
@@ -44,7 +45,7 @@ fn room(scale: f64, place: Transform) -> World {
             groups: Arena::default(),
             instances: Vec::new(),
             lights: Vec::new(),
-            media: nephroid::medium::Media::default(),
+            media: Media::default(),
         },
     };
     shapes(&mut b);

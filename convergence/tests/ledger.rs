@@ -162,7 +162,7 @@ fn square() -> Builder {
 
 /// Flux on the square as the picture shows it: radiance times π/ρ and the area.
 fn flux_by_rays(world: &World, direct_lights: DirectLights) -> MeanTest {
-    let config = PathConfig { max_depth: Some(2), direct_lights };
+    let config = PathConfig { max_depth: Some(2), direct_lights, media: false };
     let radiance = means(world, &Method::Path(config), 16, 0..20);
     radiance.into_iter().map(|l| l * PI / f64::from(ALBEDO) * 4.0).collect()
 }

@@ -16,6 +16,8 @@ use nephroid::handle::Arena;
 use nephroid::light::{Light, LightKind};
 use nephroid::material::{Bsdf, Material, Transport};
 use nephroid::math::{Ray, Transform, Vec2, Vec3, warp};
+use nephroid::medium::Boundary;
+use nephroid::medium::Media;
 use nephroid::observer::Silent;
 use nephroid::photon_map::{Bandwidth, Kernel, NearestList, PhotonMap, Photons, Query, gather};
 use nephroid::scene::Scene;
@@ -111,7 +113,7 @@ fn world(mesh: Option<Mesh>, material: impl FnOnce(&mut Textures) -> Material) -
         material,
         emission: None,
         flip_normals: false,
-        boundary: nephroid::medium::Boundary::default(),
+        boundary: Boundary::default(),
     };
     let kind = LightKind::Point { position: Vec3::Z * 5.0, intensity: Rgb::WHITE };
     let film = FilmSettings { width: 4, height: 4, crop: None, filter: Filter::Box };
@@ -128,7 +130,7 @@ fn world(mesh: Option<Mesh>, material: impl FnOnce(&mut Textures) -> Material) -
         groups,
         instances,
         lights,
-        media: nephroid::medium::Media::default(),
+        media: Media::default(),
     })
     .expect("it is sound")
 }
@@ -182,7 +184,7 @@ fn any_hit(world: &World) -> usize {
 
 fn emit(world: &World, seed: u64, paths: u64) -> Photons {
     let settings = WalkSettings::default();
-    let plan = PhotonPlan { global: MapPlan { paths, ..MapPlan::default() }, caustic: MapPlan::default() };
+    let plan = PhotonPlan { global: MapPlan { paths, ..MapPlan::default() }, ..PhotonPlan::default() };
     let pass = photon_pass(world, &settings, &plan, Extras::default(), seed, 0, &Silent);
     pass.expect("nobody cancels").global
 }

@@ -69,7 +69,7 @@ pub struct RenderArgs {
     pub outputs: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// photonmapper, path, or scene for the one the scene asks for
+    /// photonmapper, path (surfaces only), volpath, or scene for the one the scene asks for
     #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
     pub integrator: Option<Integrator>,
     /// Size of the picture
@@ -87,8 +87,8 @@ pub struct RenderArgs {
     /// Print one JSON object about the render to the standard output
     #[arg(long)]
     pub json: bool,
-    /// Further layers of .exr files: direct, global, caustic, emitted, albedo, normal, depth, position,
-    /// geo_normal, uv, radius, count
+    /// Further layers of .exr files: direct, global, caustic, emitted, medium, albedo, normal, depth,
+    /// position, geo_normal, uv, radius, count
     #[arg(long = "aov", value_name = "NAME,…", value_delimiter = ',', value_parser = layers::parse)]
     pub aovs: Vec<Aov>,
     #[command(flatten)]

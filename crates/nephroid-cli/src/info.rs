@@ -32,6 +32,9 @@ pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     let method = method::choose(None, &file.integrator, &PhotonFlags::default(), &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
     let world = load::world(file.scene, &file.origins)?;
+    for remark in &load::remarks(&world, &file.origins) {
+        messages.diagnostic(remark);
+    }
     let mut about = json!({ "scene": args.scene.display().to_string() });
     about["film"] = film(world.scene());
     about["camera"] = camera(world.scene());

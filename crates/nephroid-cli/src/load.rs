@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use nephroid::scene::{Scene, SceneError, Subject};
+use nephroid::scene::{Remark, Scene, SceneError, Subject};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
@@ -86,6 +86,15 @@ pub fn world(scene: Scene, origins: &Origins) -> Result<World, Failure> {
         };
         Failure::Scene(Diagnostics(errors.0.iter().map(diagnostic).collect()))
     })
+}
+
+/// What of a scene may not be meant so, at its place in the file.
+pub fn remarks(world: &World, origins: &Origins) -> Vec<Diagnostic> {
+    let told = |remark: &Remark| {
+        let at = origin(remark.subject, origins, &[]).unwrap_or(&origins.scene);
+        Diagnostic::warning(at, remark.message.clone())
+    };
+    world.remarks().iter().map(told).collect()
 }
 
 /// Where a part of a scene stands.

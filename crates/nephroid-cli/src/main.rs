@@ -23,6 +23,7 @@ mod render;
 mod report;
 mod scenes;
 mod tonemap;
+mod values;
 
 use std::process::ExitCode;
 

@@ -16,6 +16,8 @@ pub enum Integrator {
     PhotonMapper,
     /// Path tracing.
     Path,
+    /// Path tracing through media.
+    VolPath,
     /// What the scene says.
     Scene,
 }
@@ -26,8 +28,9 @@ impl Integrator {
         match name {
             "photonmapper" => Ok(Self::PhotonMapper),
             "path" => Ok(Self::Path),
+            "volpath" => Ok(Self::VolPath),
             "scene" => Ok(Self::Scene),
-            _ => Err("it must be photonmapper, path or scene".to_owned()),
+            _ => Err("it must be photonmapper, path, volpath or scene".to_owned()),
         }
     }
 }
@@ -69,17 +72,19 @@ pub fn choose(
         ));
     }
     let config = draft.finish();
-    if chosen == Integrator::Path {
+    if matches!(chosen, Integrator::Path | Integrator::VolPath) {
+        let media = chosen == Integrator::VolPath;
         let foreign: Vec<String> = flags
             .names()
             .into_iter()
             .filter(|name| !matches!(name.as_str(), "--max-depth" | "--direct-lights"))
             .collect();
         if !foreign.is_empty() {
-            messages.warning(&format!("{} mean nothing to the integrator path", foreign.join(", ")));
+            let name = if media { "volpath" } else { "path" };
+            messages.warning(&format!("{} mean nothing to the integrator {name}", foreign.join(", ")));
         }
         let (max_depth, direct_lights) = (config.max_depth, config.direct_lights);
-        return Ok(Method::Path(PathConfig { max_depth, direct_lights }));
+        return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
     }
     Ok(Method::PhotonMapper(config))
 }
@@ -89,6 +94,7 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
     match request.name.as_str() {
         "" | "photonmapper" => Ok(Integrator::PhotonMapper),
         "path" => Ok(Integrator::Path),
+        "volpath" | "volpathmis" => Ok(Integrator::VolPath),
         other => {
             let message = format!("the integrator \"{other}\" cannot be rendered with");
             let diagnostic = match &request.location {
@@ -154,7 +160,7 @@ pub fn describe(method: &Method) -> Value {
         Method::PhotonMapper(config) => {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(config))));
         }
-        Method::Path(PathConfig { max_depth, direct_lights }) => {
+        Method::Path(PathConfig { max_depth, direct_lights, .. }) => {
             let config = nephroid::integrator::PhotonMapperConfig {
                 max_depth: *max_depth,
                 direct_lights: *direct_lights,

@@ -2,11 +2,13 @@
 //! `<integrator type="photonmapper">`, which have the same names with underscores.
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use nephroid::integrator::{DirectSource, FinalGather, PhotonMapperConfig, Show};
+use nephroid::integrator::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 use nephroid::light::SphereSampling;
 use nephroid::photon_map::Kernel;
-use nephroid::transport::{DirectLights, LightChoice};
+use nephroid::transport::{DirectLights, Fog, LightChoice, VolumeKind};
 use serde_json::{Value, json};
+
+use crate::values::{boolean, count, depth, final_gather, kernel, length, name_of, number, one_of};
 
 /// More photons than this fit in no map: it counts them with 32 bits, and a target may be exceeded.
 const MAX_PHOTONS: u64 = 1_000_000_000;
@@ -51,7 +53,15 @@ const SHOW: &[(&str, Show)] = &[
     ("indirect", Show::Indirect),
     ("global", Show::Global),
     ("caustic", Show::Caustic),
+    ("medium", Show::Medium),
 ];
+const VOLUME_KIND: &[(&str, VolumeKind)] = &[("points", VolumeKind::Points), ("beams", VolumeKind::Beams)];
+const VOLUME_ESTIMATE: &[(&str, VolumeEstimate)] = &[
+    ("beam", VolumeEstimate::Beam),
+    ("march", VolumeEstimate::March),
+    ("march-report", VolumeEstimate::MarchReport),
+];
+const FOG: &[(&str, Fog)] = &[("volume", Fog::Volume), ("ambient", Fog::Ambient)];
 
 /// Every parameter.
 pub const PARAMETERS: &[Parameter] = &[
@@ -187,9 +197,66 @@ pub const PARAMETERS: &[Parameter] = &[
         get: |c| json!(c.aim),
     },
     Parameter {
+        name: "fog",
+        value: "KIND",
+        help: "What media do: scatter light (volume), or weaken it and look the same everywhere (ambient)",
+        set: |d, v| one_of(v, FOG).map(|f| d.config.fog = f),
+        get: |c| name_of(FOG, c.fog),
+    },
+    Parameter {
+        name: "single-scatter",
+        value: "SOURCE",
+        help: "Light that media scatter once by rays to the lights, or from the map: rays, map",
+        set: |d, v| one_of(v, DIRECT).map(|s| d.config.single_scatter = s),
+        get: |c| name_of(DIRECT, c.single_scatter),
+    },
+    Parameter {
+        name: "volume-photons",
+        value: "N",
+        help: "Photons (or beams) wanted in each map of light in media [default: by the kind]",
+        set: |d, v| count(v, 0, MAX_PHOTONS).map(|n| d.config.volume_photons = Some(n)),
+        get: |c| json!(c.volume_photons),
+    },
+    Parameter {
+        name: "volume-kind",
+        value: "KIND",
+        help: "What these maps hold: points, beams",
+        set: |d, v| one_of(v, VOLUME_KIND).map(|k| d.config.volume_kind = k),
+        get: |c| name_of(VOLUME_KIND, c.volume_kind),
+    },
+    Parameter {
+        name: "volume-estimate",
+        value: "ESTIMATE",
+        help: "How points light a ray: beam (each blurred across it), march (steps), march-report (its fixed \
+               steps, for comparison)",
+        set: |d, v| one_of(v, VOLUME_ESTIMATE).map(|e| d.config.volume_estimate = e),
+        get: |c| name_of(VOLUME_ESTIMATE, c.volume_estimate),
+    },
+    Parameter {
+        name: "volume-neighbours",
+        value: "N",
+        help: "Photons of an estimate in media [default: by the estimate]",
+        set: |d, v| count(v, 2, 1_000_000).map(|n| d.config.volume_neighbours = Some(n as u32)),
+        get: |c| json!(c.volume_neighbours),
+    },
+    Parameter {
+        name: "beam-crossings",
+        value: "N",
+        help: "Beams of light that a ray passes within their radius",
+        set: |d, v| number(v, "a number above zero", |k| k > 0.0).map(|k| d.config.beam_crossings = k),
+        get: |c| json!(c.beam_crossings),
+    },
+    Parameter {
+        name: "march-step",
+        value: "LENGTH",
+        help: "Steps of march-report, in scene units [default: a 128th of the scene]",
+        set: |d, v| length(v).map(|l| d.config.march_step = Some(l)),
+        get: |c| json!(c.march_step),
+    },
+    Parameter {
         name: "show",
         value: "PART",
-        help: "What part of the light is drawn: all, direct, indirect, global, caustic",
+        help: "What part of the light is drawn: all, direct, indirect, global, caustic, medium",
         set: |d, v| one_of(v, SHOW).map(|s| d.config.show = s),
         get: |c| name_of(SHOW, c.show),
     },
@@ -267,62 +334,6 @@ impl FromArgMatches for PhotonFlags {
     }
 }
 
-/// A whole number between two others, also one written as 1e6.
-fn count(text: &str, least: u64, most: u64) -> Result<u64, String> {
-    let whole = |v: f64| (v.fract() == 0.0 && (0.0..1e15).contains(&v)).then_some(v as u64);
-    let number = text.parse().ok().or_else(|| text.parse().ok().and_then(whole));
-    number
-        .filter(|n| (least..=most).contains(n))
-        .ok_or_else(|| format!("it must be a whole number between {least} and {most}"))
-}
-
-fn depth(text: &str) -> Result<Option<u32>, String> {
-    if text == "-1" {
-        return Ok(None);
-    }
-    let most = u64::from(u32::MAX);
-    count(text, 0, most).map(|n| Some(n as u32)).map_err(|_| "it must be a whole number, or -1".to_owned())
-}
-
-fn length(text: &str) -> Result<f32, String> {
-    number(text, "a length above zero", |r| r > 0.0)
-}
-
-fn number(text: &str, expected: &str, accept: impl Fn(f32) -> bool) -> Result<f32, String> {
-    let number = text.parse().ok().filter(|&v: &f32| v.is_finite() && accept(v));
-    number.ok_or_else(|| format!("it must be {expected}"))
-}
-
-fn kernel(text: &str) -> Result<Kernel, String> {
-    Kernel::parse(text).ok_or_else(|| format!("it must be one of {}", Kernel::NAMES.join(", ")))
-}
-
-fn boolean(text: &str) -> Result<bool, String> {
-    text.parse().map_err(|_| "it must be true or false".to_owned())
-}
-
-fn final_gather(text: &str) -> Result<FinalGather, String> {
-    match text {
-        "on" | "true" => Ok(FinalGather::Auto),
-        "off" | "false" | "0" => Ok(FinalGather::Off),
-        _ => count(text, 1, 1 << 16)
-            .map(|n| FinalGather::Rays(n as u32))
-            .map_err(|_| "it must be on, off or a number of rays".to_owned()),
-    }
-}
-
-fn one_of<T: Copy>(text: &str, choices: &[(&str, T)]) -> Result<T, String> {
-    let found = choices.iter().find(|(name, _)| *name == text);
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        format!("it must be one of {}", names.join(", "))
-    })
-}
-
-fn name_of<T: PartialEq>(choices: &[(&'static str, T)], value: T) -> Value {
-    choices.iter().find(|(_, v)| *v == value).map_or(Value::Null, |(name, _)| json!(name))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -355,6 +366,14 @@ mod tests {
         ("light-choice", "equal"),
         ("sphere-sampling", "rejection"),
         ("aim", "false"),
+        ("fog", "ambient"),
+        ("single-scatter", "map"),
+        ("volume-photons", "12"),
+        ("volume-kind", "beams"),
+        ("volume-estimate", "march"),
+        ("volume-neighbours", "33"),
+        ("beam-crossings", "7.0"),
+        ("march-step", "0.125"),
         ("show", "indirect"),
     ];
 
@@ -395,6 +414,10 @@ mod tests {
             ("final-gather", "-3"),
             ("max-depth", "-2"),
             ("show", "nothing"),
+            ("fog", "thick"),
+            ("volume-neighbours", "1"),
+            ("beam-crossings", "0"),
+            ("march-step", "-1"),
         ] {
             let message = configured(&[(name, value)]).unwrap_err();
             assert!(message.starts_with("it must be "), "{name}={value}: {message}");

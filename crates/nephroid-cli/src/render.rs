@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use nephroid::film::Film;
 use nephroid::session::{RenderSettings, Session, Statistics};
 use nephroid::world::World;
+use nephroid_formats::diagnostic::Diagnostic;
 use nephroid_formats::image::MAX_PIXELS;
 use nephroid_formats::mitsuba::SceneFile;
 use std::io::IsTerminal;
@@ -41,6 +42,8 @@ pub struct Rendered {
     pub preparing: Duration,
     /// How long it took to render, from the pilot to the last sample.
     pub rendering: Duration,
+    /// What of the scene may not be meant so.
+    pub remarks: Vec<Diagnostic>,
     /// Further layers of the picture.
     pub layers: Vec<DevelopedLayer>,
     /// Threads that worked on it.
@@ -81,6 +84,9 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
 
     let rendered = pool(args.threads)?.install(|| render(file, &settings, &plan, &layers, visible))?;
 
+    for remark in &rendered.remarks {
+        messages.diagnostic(remark);
+    }
     let writing = Instant::now();
     let outputs = write(&rendered, &outputs, args)?;
     let report = Report {
@@ -138,7 +144,8 @@ fn render(
     visible: bool,
 ) -> Result<Rendered, Failure> {
     let clock = Instant::now();
-    let world = load::world(file.scene, &file.origins)?;
+    let SceneFile { scene, origins, .. } = file;
+    let world = load::world(scene, &origins)?;
     let preparing = clock.elapsed();
     let window = world.scene().film.window();
     let pixels = u64::from(window.width) * u64::from(window.height);
@@ -150,6 +157,7 @@ fn render(
     Ok(Rendered {
         film: session.film().clone(),
         statistics: session.statistics().clone(),
+        remarks: load::remarks(&world, &origins),
         layers: layers::develop(layers, session.aovs()),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
         has_light: has_light(&world),

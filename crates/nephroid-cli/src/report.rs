@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use nephroid::integrator::Method;
 use nephroid::session::{MapStatistics, RenderSettings};
-use nephroid::transport::{Balance, MapPlan};
+use nephroid::transport::{Balance, MapPlan, VolumeKind};
 use serde_json::{Value, json};
 
 use crate::console::Messages;
@@ -36,6 +36,8 @@ pub struct Report<'a> {
 /// One map's numbers, with what was planned for it.
 struct Map {
     name: &'static str,
+    /// What it holds.
+    what: &'static str,
     wanted: u64,
     plan: MapPlan,
     numbers: MapStatistics,
@@ -69,10 +71,28 @@ impl Report<'_> {
     fn maps(&self) -> Vec<Map> {
         let Method::PhotonMapper(config) = &self.settings.method else { return Vec::new() };
         let s = &self.rendered.statistics;
-        vec![
-            Map { name: "global", wanted: config.photons, plan: s.plan.global, numbers: s.global },
-            Map { name: "caustic", wanted: config.caustic_photons, plan: s.plan.caustic, numbers: s.caustic },
-        ]
+        let what = "photons";
+        let mut maps = vec![
+            Map { name: "global", what, wanted: config.photons, plan: s.plan.global, numbers: s.global },
+            Map {
+                name: "caustic",
+                what,
+                wanted: config.caustic_photons,
+                plan: s.plan.caustic,
+                numbers: s.caustic,
+            },
+        ];
+        if s.plan.volume.paths + s.plan.volume_caustic.paths > 0 {
+            let wanted = config.volume_photons();
+            let what = if config.volume_kind == VolumeKind::Beams { "beams" } else { what };
+            let (plan, numbers) = (s.plan.volume, s.volume);
+            maps.push(Map { name: "volume", what, wanted, plan, numbers });
+            let (plan, numbers) = (s.plan.volume_caustic, s.volume_caustic);
+            if plan.paths > 0 {
+                maps.push(Map { name: "volume caustic", what, wanted, plan, numbers });
+            }
+        }
+        maps
     }
 
     fn balances(&self) -> impl Iterator<Item = (&str, &Balance)> {
@@ -162,15 +182,16 @@ impl Report<'_> {
             let bytes = map.bytes_per_photon().map_or(String::new(), |b| format!(", {b:.0} bytes each"));
             let _ = writeln!(
                 out,
-                "{:>7} map: {} photons stored of {} paths{bytes}",
+                "{:>14} map: {} {} stored of {} paths{bytes}",
                 map.name,
                 grouped(map.numbers.photons),
+                map.what,
                 grouped(map.numbers.paths)
             );
         }
         let seconds = self.seconds();
         let times: Vec<String> = seconds.iter().map(|(name, s)| format!("{name} {s:.2}")).collect();
-        let _ = writeln!(out, "    seconds: {}", times.join(", "));
+        let _ = writeln!(out, "           seconds: {}", times.join(", "));
         self.ledger(&mut out);
         if let Some(ratio) = s.picture.direct_to_indirect() {
             let _ = writeln!(out, "direct to indirect light: {ratio:.4}");
@@ -191,12 +212,12 @@ impl Report<'_> {
             if i == 0 {
                 let _ = writeln!(
                     out,
-                    "{:width$} {:>11} {:>11} {:>11} {:>11} {:>11}   imbalance  roulette/sigma  (W, mean of the channels)",
-                    "light", "emitted", "absorbed", "escaped", "ended", "roulette"
+                    "{:width$} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}   imbalance  roulette/sigma  (W, mean of the channels)",
+                    "light", "emitted", "absorbed", "in media", "escaped", "ended", "roulette"
                 );
             }
             let _ = write!(out, "{name:width$}");
-            for value in [b.emitted, b.absorbed, b.escaped, b.ended, b.roulette] {
+            for value in [b.emitted, b.absorbed, b.absorbed_by_media, b.escaped, b.ended, b.roulette] {
                 let _ = write!(out, " {:>11}", power(mean(value)));
             }
             let _ = writeln!(out, " {:>11.1e} {:>15.2}", b.imbalance(), b.roulette_z());
@@ -265,6 +286,7 @@ impl Report<'_> {
                 "direct": picture(s.picture.direct),
                 "global": picture(s.picture.global),
                 "caustic": picture(s.picture.caustic),
+                "medium": picture(s.picture.medium),
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
             "outputs": outputs,
@@ -279,6 +301,7 @@ fn balance_json((light, balance): (&str, &Balance)) -> Value {
         "light": light,
         "emitted": balance.emitted,
         "absorbed": balance.absorbed,
+        "absorbed_by_media": balance.absorbed_by_media,
         "escaped": balance.escaped,
         "ended": balance.ended,
         "roulette": balance.roulette,

@@ -30,6 +30,10 @@ pub struct Statistics {
     pub global: MapStatistics,
     /// The same for the caustic map.
     pub caustic: MapStatistics,
+    /// The same for the map of light in media, which holds photons or beams.
+    pub volume: MapStatistics,
+    /// The same for that of caustics in media.
+    pub volume_caustic: MapStatistics,
     /// The paths planned for each iteration; all zero where there are no photons.
     pub plan: PhotonPlan,
     /// Where the power of each light went, in W, mean over the iterations; no lights where no photon
@@ -203,6 +207,12 @@ impl<'w> Session<'w> {
         for (numbers, map) in
             [(&mut self.statistics.global, &maps.global), (&mut self.statistics.caustic, &maps.caustic)]
         {
+            numbers.paths += map.emitted();
+            numbers.photons += map.len() as u64;
+            numbers.bytes = map.memory_bytes() as u64;
+        }
+        let Statistics { volume, volume_caustic, .. } = &mut self.statistics;
+        for (numbers, map) in [volume, volume_caustic].into_iter().zip(&maps.volumes) {
             numbers.paths += map.emitted();
             numbers.photons += map.len() as u64;
             numbers.bytes = map.memory_bytes() as u64;

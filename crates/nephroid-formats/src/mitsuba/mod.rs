@@ -30,6 +30,7 @@ pub use integrator::{AovLayer, IntegratorParameter, IntegratorRequest, Parameter
 
 use std::path::Path;
 
+use nephroid::medium::Media;
 use nephroid::scene::Scene;
 
 use self::document::{Document, Element};
@@ -167,7 +168,7 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
         groups,
         instances,
         lights,
-        media: nephroid::medium::Media::default(),
+        media: Media::default(),
     };
     let sample_count = sensor.sample_count;
     Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })

@@ -2,6 +2,7 @@
 
 use nephroid::handle::Handle;
 use nephroid::math::Vec3;
+use nephroid::medium::Boundary;
 use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::Texture;
 
@@ -79,7 +80,7 @@ impl<'t> Reader<'t> {
             material: material?,
             emission,
             flip_normals,
-            boundary: nephroid::medium::Boundary::default(),
+            boundary: Boundary::default(),
         })
     }
 

@@ -11,12 +11,14 @@ use crate::color::Rgb;
 pub enum Aov {
     /// Light that met one surface that is not specular, and came straight to it, in W/(m²·sr).
     Direct,
-    /// All light that is in none of the other three parts, in W/(m²·sr).
+    /// All light that is in none of the other parts, in W/(m²·sr).
     Global,
     /// Light that came to such a surface by specular ones, in W/(m²·sr).
     Caustic,
     /// Lamps and sky, seen directly or through specular surfaces, in W/(m²·sr).
     Emitted,
+    /// Light from media, directly or by specular surfaces, in W/(m²·sr).
+    Medium,
     /// What the first surface reflects of white light, in [0, 1]. Dirac surfaces are followed, and
     /// dim it as they dim light.
     Albedo,
@@ -49,15 +51,16 @@ pub(super) enum Over {
 }
 
 /// Single-precision numbers of all values together.
-pub(super) const NUMBERS: usize = 29;
+pub(super) const NUMBERS: usize = 32;
 
 impl Aov {
     /// Every one of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Direct,
         Self::Global,
         Self::Caustic,
         Self::Emitted,
+        Self::Medium,
         Self::Albedo,
         Self::Normal,
         Self::Depth,
@@ -75,6 +78,7 @@ impl Aov {
             Self::Global => "global",
             Self::Caustic => "caustic",
             Self::Emitted => "emitted",
+            Self::Medium => "medium",
             Self::Albedo => "albedo",
             Self::Normal => "normal",
             Self::Depth => "depth",
@@ -94,7 +98,9 @@ impl Aov {
     /// The channels of its layer in OpenEXR files.
     pub fn channels(self) -> &'static [&'static str] {
         match self {
-            Self::Direct | Self::Global | Self::Caustic | Self::Emitted | Self::Albedo => &["R", "G", "B"],
+            Self::Direct | Self::Global | Self::Caustic | Self::Emitted | Self::Medium | Self::Albedo => {
+                &["R", "G", "B"]
+            }
             Self::Normal | Self::Position | Self::GeometricNormal => &["X", "Y", "Z"],
             Self::Uv => &["U", "V"],
             Self::Depth => &["Z"],
@@ -114,9 +120,13 @@ impl Aov {
 
     pub(super) fn over(self) -> Over {
         match self {
-            Self::Direct | Self::Global | Self::Caustic | Self::Emitted | Self::Albedo | Self::Normal => {
-                Over::Samples
-            }
+            Self::Direct
+            | Self::Global
+            | Self::Caustic
+            | Self::Emitted
+            | Self::Medium
+            | Self::Albedo
+            | Self::Normal => Over::Samples,
             Self::Depth | Self::Position | Self::GeometricNormal | Self::Uv => Over::Hits,
             Self::Radius | Self::Count => Over::LookUps,
         }
@@ -141,17 +151,15 @@ impl Default for AovSample {
 
 impl AovSample {
     /// One that has the parts of the light and nothing else.
-    pub fn of_light(direct: Rgb, global: Rgb, caustic: Rgb, emitted: Rgb) -> Self {
+    pub fn of_light(parts: [(Aov, Rgb); 5]) -> Self {
         let mut sample = Self::default();
-        sample.add_light(direct, global, caustic, emitted);
+        sample.add_light(parts);
         sample
     }
 
     /// Adds to the parts of the light.
-    pub fn add_light(&mut self, direct: Rgb, global: Rgb, caustic: Rgb, emitted: Rgb) {
-        for (aov, light) in
-            [(Aov::Direct, direct), (Aov::Global, global), (Aov::Caustic, caustic), (Aov::Emitted, emitted)]
-        {
+    pub fn add_light(&mut self, parts: [(Aov, Rgb); 5]) {
+        for (aov, light) in parts {
             self.add(aov, &light.to_array());
         }
     }

@@ -6,19 +6,20 @@ mod probe;
 
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
-pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show};
+pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use photon_mapper::{Maps, PhotonMapper};
 pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Probe};
 pub use probe::{LightPart, MapName};
 
 use crate::color::Rgb;
+use crate::film::Aov;
 
 /// The integrators and their configurations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Method {
     /// Two-pass photon mapping.
     PhotonMapper(PhotonMapperConfig),
-    /// Unbiased path tracing, the reference for surfaces.
+    /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
 }
 
@@ -27,6 +28,7 @@ impl Method {
     pub fn name(&self) -> &'static str {
         match self {
             Self::PhotonMapper(_) => "photonmapper",
+            Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
         }
     }
@@ -49,12 +51,25 @@ pub struct Components {
     pub global: Rgb,
     /// Light that came to such a surface by specular ones.
     pub caustic: Rgb,
+    /// Light that a medium scattered or gave off towards the camera, directly or by specular surfaces.
+    pub medium: Rgb,
 }
 
 impl Components {
     /// All of it.
     pub fn total(&self) -> Rgb {
-        self.emitted + self.direct + self.global + self.caustic
+        self.emitted + self.direct + self.global + self.caustic + self.medium
+    }
+
+    /// Its parts by the layers of a picture that show them.
+    pub(crate) fn by_layer(&self) -> [(Aov, Rgb); 5] {
+        [
+            (Aov::Direct, self.direct),
+            (Aov::Global, self.global),
+            (Aov::Caustic, self.caustic),
+            (Aov::Emitted, self.emitted),
+            (Aov::Medium, self.medium),
+        ]
     }
 
     /// Adds to one part of it.
@@ -64,6 +79,7 @@ impl Components {
             LightPart::Direct => &mut self.direct,
             LightPart::Global => &mut self.global,
             LightPart::Caustic => &mut self.caustic,
+            LightPart::Medium => &mut self.medium,
         } += light;
     }
 
@@ -74,6 +90,7 @@ impl Components {
             LightPart::Direct => self.direct,
             LightPart::Global => self.global,
             LightPart::Caustic => self.caustic,
+            LightPart::Medium => self.medium,
         }
     }
 }
@@ -89,6 +106,8 @@ pub struct PictureSums {
     pub global: [f64; 3],
     /// Caustics.
     pub caustic: [f64; 3],
+    /// Light from media.
+    pub medium: [f64; 3],
     /// Camera samples that were summed.
     pub samples: u64,
 }
@@ -100,6 +119,7 @@ impl PictureSums {
             (&mut self.direct, c.direct),
             (&mut self.global, c.global),
             (&mut self.caustic, c.caustic),
+            (&mut self.medium, c.medium),
         ] {
             for (s, v) in sum.iter_mut().zip(value.to_array()) {
                 *s += f64::from(v);
@@ -114,6 +134,7 @@ impl PictureSums {
             (&mut self.direct, more.direct),
             (&mut self.global, more.global),
             (&mut self.caustic, more.caustic),
+            (&mut self.medium, more.medium),
         ] {
             for (s, v) in sum.iter_mut().zip(value) {
                 *s += v;

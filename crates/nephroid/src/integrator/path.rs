@@ -1,23 +1,28 @@
 //! Path tracing with next event estimation and multiple importance sampling (Kajiya 1986; Veach
-//! 1997): unbiased, and so the measure of every other estimator on surfaces. Light that reaches a
-//! surface from a Dirac light by way of a specular one is beyond it.
+//! 1997), in media with collisions at sampled distances: unbiased, and so the measure of every other
+//! estimator. Light that reaches a surface or a medium from a Dirac light by way of a specular one is beyond it.
 
 use super::{Components, Estimator, LightPart, Met, Probe};
 use crate::color::Rgb;
 use crate::material::Transport;
-use crate::math::Vec3;
+use crate::math::{Ray, Vec3};
+use crate::medium::{Passage, PhaseSample};
 use crate::photon_map::NearestList;
 use crate::sampling::power_heuristic;
-use crate::transport::{DirectLights, Partner, PixelSample, light_pdf, sample_lights, sky_by_bsdf, survival};
-use crate::world::{World, leave};
+use crate::transport::{
+    DirectLights, Lit, Partner, PixelSample, Scatterer, light_pdf, sample_lights, sky_by_bsdf, survival,
+};
+use crate::world::{Surroundings, World, leave};
 
 /// Settings of the path tracer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathConfig {
     /// Segments of a path from light to lens; `None` without end.
     pub max_depth: Option<u32>,
-    /// Which lights are sampled at each surface.
+    /// Which lights are sampled at each surface and collision.
     pub direct_lights: DirectLights,
+    /// Whether there is anything between surfaces: `volpath` in scene files. Else they are in vacuum.
+    pub media: bool,
 }
 
 /// How the segment being traced came to be.
@@ -25,7 +30,7 @@ pub struct PathConfig {
 enum Last {
     /// From the camera or a Dirac lobe: nothing else could have found what it meets.
     Certain,
-    /// Sampled from a BSDF at a point with a density, as lights were sampled, too.
+    /// Sampled from a BSDF or a phase function at a point with a density, as lights were sampled, too.
     Sampled { from: Vec3, pdf_solid_angle: f32 },
 }
 
@@ -56,20 +61,59 @@ fn radiance<P: Probe>(
     probe.begin(None, Rgb::WHITE);
     let mut out = Components::default();
     let mut ray = sample.ray;
+    let mut inside = if config.media { world.camera_surroundings() } else { Surroundings::BLIND };
     let mut throughput = Rgb::WHITE;
     let mut last = Last::Certain;
-    // Segments up to the next surface, and surfaces that were not specular.
-    let (mut depth, mut diffuse) = (1, 0u32);
+    let mut so_far = SoFar::default();
+    // Segments up to the next surface or collision.
+    let mut depth = 1;
     let fits = |depth: u32| config.max_depth.is_none_or(|max| depth <= max);
     while fits(depth) {
-        let Some(hit) = world.intersect(&ray) else {
+        let hit = world.intersect(&ray);
+        if let Some(matter) = world.matter(inside) {
+            let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+            if matter.emits() {
+                let emitted = matter.emitted(&ray, end, &mut sample.sampler);
+                book(&mut out, LightPart::Medium, throughput * emitted, probe);
+            }
+            match matter.travel(&ray, end, throughput, &mut sample.sampler) {
+                Passage::Through { weight } => throughput *= weight,
+                Passage::Collision { t, weight } => {
+                    let (position, wo) = (ray.at(t), -ray.direction);
+                    let before = throughput;
+                    throughput *= weight * matter.albedo(position);
+                    so_far.collide();
+                    if fits(depth + 1) {
+                        let lit = Lit {
+                            scatterer: Scatterer::Medium { position, phase: matter.phase() },
+                            wo,
+                            inside,
+                        };
+                        let direct = throughput * lights(world, config, &lit, sample);
+                        book(&mut out, so_far.part(Last::Certain), direct, probe);
+                    }
+                    let (u, u_survive) = (sample.sampler.next_2d(), sample.sampler.next_1d());
+                    let q = survival(before * weight, throughput, depth - 1);
+                    if u_survive >= q || throughput.is_black() {
+                        break;
+                    }
+                    throughput = throughput / q;
+                    let PhaseSample { wi, pdf_solid_angle } = matter.phase().sample(wo, u);
+                    last = Last::Sampled { from: position, pdf_solid_angle };
+                    ray = Ray::new(position, wi);
+                    depth += 1;
+                    continue;
+                }
+            }
+        }
+        let Some(hit) = hit else {
             let sky = match last {
                 Last::Certain => world.sky(ray.direction),
                 Last::Sampled { pdf_solid_angle, .. } => {
                     sky_by_bsdf(world, ray.direction, pdf_solid_angle, config.direct_lights)
                 }
             };
-            book(&mut out, throughput * sky, diffuse, last, probe);
+            book(&mut out, so_far.part(last), throughput * sky, probe);
             break;
         };
         let wo = -ray.direction;
@@ -81,23 +125,22 @@ fn radiance<P: Probe>(
                     power_heuristic(pdf_solid_angle, pdf)
                 }
             };
-            book(&mut out, throughput * emitted * weight, diffuse, last, probe);
+            book(&mut out, so_far.part(last), throughput * emitted * weight, probe);
         }
         let bsdf = world.bsdf(&hit, wo);
         if bsdf.is_null() {
+            inside = world.cross(inside, &hit, ray.direction, ray.direction);
             ray = leave(&hit.point, ray.direction);
             continue;
         }
-        probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: diffuse == 0 });
+        probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: so_far.scattered == 0 });
         if !bsdf.is_dirac() {
-            diffuse += 1;
+            so_far.scattered += 1;
             if fits(depth + 1) {
-                let (lights, sampler) = (config.direct_lights, &mut sample.sampler);
-                let direct =
-                    sample_lights(world, &hit.point, &bsdf, wo, lights, Partner::BsdfSample, sampler);
-                let part = if diffuse == 1 { LightPart::Direct } else { LightPart::Global };
-                out.add(part, throughput * direct);
-                probe.light(part, throughput * direct);
+                let lit = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside };
+                let direct = throughput * lights(world, config, &lit, sample);
+                let part = so_far.part(Last::Sampled { from: hit.point.position, pdf_solid_angle: 1.0 });
+                book(&mut out, part, direct, probe);
             }
         }
         let s = &mut sample.sampler;
@@ -114,21 +157,46 @@ fn radiance<P: Probe>(
         } else {
             Last::Sampled { from: hit.point.position, pdf_solid_angle: scattered.pdf_solid_angle }
         };
+        inside = world.cross(inside, &hit, ray.direction, scattered.wi);
         ray = leave(&hit.point, scattered.wi);
         depth += 1;
     }
     out
 }
 
-/// Books light by how many surfaces that are not specular it met, and whether a specular one after the
-/// only one of them makes it a caustic.
-fn book(out: &mut Components, light: Rgb, diffuse: u32, last: Last, probe: &mut impl Probe) {
-    let part = match (diffuse, last) {
-        (0, _) => LightPart::Emitted,
-        (1, Last::Certain) => LightPart::Caustic,
-        (1, Last::Sampled { .. }) => LightPart::Direct,
-        _ => LightPart::Global,
-    };
+/// Direct light where a path is, as directions will be sampled there, too.
+fn lights(world: &World, config: &PathConfig, lit: &Lit<'_>, sample: &mut PixelSample) -> Rgb {
+    sample_lights(world, lit, config.direct_lights, Partner::BsdfSample, &mut sample.sampler)
+}
+
+/// What a path has met, as far as it decides what its light is called.
+#[derive(Clone, Copy, Default)]
+struct SoFar {
+    /// Surfaces that are not specular, and collisions.
+    scattered: u32,
+    /// Whether the first of them was a collision.
+    by_medium: bool,
+}
+
+impl SoFar {
+    fn collide(&mut self) {
+        self.by_medium |= self.scattered == 0;
+        self.scattered += 1;
+    }
+
+    /// What light is that the path finds now: a specular surface after the only other one makes it a caustic.
+    fn part(self, last: Last) -> LightPart {
+        match (self.scattered, last) {
+            (0, _) => LightPart::Emitted,
+            _ if self.by_medium => LightPart::Medium,
+            (1, Last::Certain) => LightPart::Caustic,
+            (1, Last::Sampled { .. }) => LightPart::Direct,
+            _ => LightPart::Global,
+        }
+    }
+}
+
+fn book(out: &mut Components, part: LightPart, light: Rgb, probe: &mut impl Probe) {
     out.add(part, light);
     probe.light(part, light);
 }

@@ -20,6 +20,8 @@ pub enum LightPart {
     Global,
     /// Light that came to such a surface by specular ones.
     Caustic,
+    /// Light from a medium, directly or by specular surfaces.
+    Medium,
 }
 
 /// The photon maps of an iteration.
@@ -32,11 +34,13 @@ pub enum MapName {
     Caustic,
     /// L S⁺ D S* D, for surfaces whose other light gather rays bring.
     Afterglow,
+    /// V S* D, light from media, for the same surfaces.
+    Haze,
 }
 
 impl MapName {
     /// Every one of them.
-    pub const ALL: [Self; 3] = [Self::Global, Self::Caustic, Self::Afterglow];
+    pub const ALL: [Self; 4] = [Self::Global, Self::Caustic, Self::Afterglow, Self::Haze];
 
     /// What the command line and exports call it.
     pub fn name(self) -> &'static str {
@@ -44,6 +48,7 @@ impl MapName {
             Self::Global => "global",
             Self::Caustic => "caustic",
             Self::Afterglow => "afterglow",
+            Self::Haze => "haze",
         }
     }
 }
@@ -114,7 +119,7 @@ impl AovProbe {
 
     /// All values, those of light included.
     pub fn finish(mut self, light: &Components) -> AovSample {
-        self.sample.add_light(light.direct, light.global, light.caustic, light.emitted);
+        self.sample.add_light(light.by_layer());
         self.sample
     }
 }
@@ -145,7 +150,7 @@ impl Probe for AovProbe {
     }
 
     fn look_up(&mut self, look_up: &LookUp, gathered: Gathered) {
-        if !self.gathering && look_up.map != MapName::Afterglow {
+        if !self.gathering && !matches!(look_up.map, MapName::Afterglow | MapName::Haze) {
             self.sample.look_ups += 1;
             self.sample.add(Aov::Radius, &[gathered.radius]);
             self.sample.add(Aov::Count, &[gathered.count as f32]);

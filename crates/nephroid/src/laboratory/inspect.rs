@@ -19,7 +19,7 @@ pub struct Inspector<'w> {
     settings: RenderSettings,
     pixel: (u32, u32),
     plan: PhotonPlan,
-    maps: Option<(Maps, [Catalogue; 3])>,
+    maps: Option<(Maps, [Catalogue; 4])>,
     film: Film,
     parts: AovFilm,
     iteration: u64,
@@ -59,7 +59,7 @@ impl<'w> Inspector<'w> {
             plan,
             maps: None,
             film: Film::new(1, 1),
-            parts: AovFilm::new(1, 1, &[Aov::Direct, Aov::Global, Aov::Caustic, Aov::Emitted]),
+            parts: AovFilm::new(1, 1, &[Aov::Direct, Aov::Global, Aov::Caustic, Aov::Emitted, Aov::Medium]),
             iteration: 0,
             samples: 0,
             samples_in_all: 0,
@@ -114,11 +114,12 @@ impl<'w> Inspector<'w> {
             direct: part(Aov::Direct),
             global: part(Aov::Global),
             caustic: part(Aov::Caustic),
+            medium: part(Aov::Medium),
         };
         PixelReport { radiance: self.film.develop().pixels[0], light, samples: self.inspected }
     }
 
-    fn build(&self, config: &PhotonMapperConfig, observer: &dyn Observer) -> Option<(Maps, [Catalogue; 3])> {
+    fn build(&self, config: &PhotonMapperConfig, observer: &dyn Observer) -> Option<(Maps, [Catalogue; 4])> {
         let RenderSettings { samples_per_pixel, seed, .. } = self.settings;
         let pass = photons::record(
             self.world,
@@ -133,11 +134,13 @@ impl<'w> Inspector<'w> {
         let (caustic, of_caustic) = Catalogue::build(pass.caustic, pass.caustic_paths);
         let (afterglow, of_afterglow) = Catalogue::build(pass.afterglow, pass.caustic_paths);
         let gathers = config.gather_rays(samples_per_pixel).is_some();
-        let maps = Maps::new([global, caustic, afterglow], gathers, Ledger::default());
-        Some((maps, [of_global, of_caustic, of_afterglow]))
+        let (haze, of_haze) = Catalogue::build(pass.haze, pass.global_paths);
+        let volumes = Maps::volumes(self.world, config, &self.plan, seed, self.iteration, observer)?;
+        let maps = Maps::new([global, caustic, afterglow, haze], volumes, gathers, Ledger::default());
+        Some((maps, [of_global, of_caustic, of_afterglow, of_haze]))
     }
 
-    fn take(&mut self, estimator: &impl Estimator, catalogues: Option<&[Catalogue; 3]>, samples: u32) {
+    fn take(&mut self, estimator: &impl Estimator, catalogues: Option<&[Catalogue; 4]>, samples: u32) {
         let filter = FilterSampler::new(self.world.scene().film.filter);
         let key = pixel_key(self.settings.seed, self.iteration, self.pixel);
         let (mut neighbors, mut sum, mut parts) =
@@ -148,7 +151,7 @@ impl<'w> Inspector<'w> {
             let mut probe = InspectProbe::new(catalogues);
             let light = estimator.radiance(&mut sample, &mut neighbors, &mut probe);
             sum.add(light.total(), weight);
-            parts.add(&AovSample::of_light(light.direct, light.global, light.caustic, light.emitted), weight);
+            parts.add(&AovSample::of_light(light.by_layer()), weight);
             let (surfaces, rays, look_ups) = Default::default();
             let iteration = self.iteration;
             let mut report = InspectedSample {

@@ -99,7 +99,7 @@ pub struct Contribution {
 
 /// Takes down what the estimate of a sample meets.
 pub(super) struct InspectProbe<'c> {
-    catalogues: Option<&'c [Catalogue; 3]>,
+    catalogues: Option<&'c [Catalogue; 4]>,
     gather_ray: Option<u64>,
     base: Rgb,
     throughput: Rgb,
@@ -115,7 +115,7 @@ pub(super) struct InspectProbe<'c> {
 
 impl<'c> InspectProbe<'c> {
     /// `catalogues` are in the order of [`MapName::ALL`]; none without photons.
-    pub fn new(catalogues: Option<&'c [Catalogue; 3]>) -> Self {
+    pub fn new(catalogues: Option<&'c [Catalogue; 4]>) -> Self {
         Self {
             catalogues,
             gather_ray: None,

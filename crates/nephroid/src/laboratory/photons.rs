@@ -44,6 +44,7 @@ pub fn record_photons(
         (MapName::Global, pass.global, pass.global_paths),
         (MapName::Caustic, pass.caustic, pass.caustic_paths),
         (MapName::Afterglow, pass.afterglow, pass.caustic_paths),
+        (MapName::Haze, pass.haze, pass.global_paths),
     ];
     let mut photons = Vec::new();
     for (map, list, paths) in lists {

@@ -243,6 +243,7 @@ fn of_map(map: MapName) -> Rgb {
         MapName::Global => Rgb::new(0.45, 0.65, 1.0),
         MapName::Caustic => Rgb::new(1.0, 0.65, 0.1),
         MapName::Afterglow => Rgb::new(0.4, 0.9, 0.45),
+        MapName::Haze => Rgb::new(0.8, 0.5, 0.9),
     }
 }
 

@@ -4,7 +4,7 @@ use super::aim::{Cones, Targets};
 use super::emitter::{Emission, EmissionNumbers, Incident, Lookup, Source};
 use crate::color::Rgb;
 use crate::handle::Handle;
-use crate::math::{Frame, Ray, Vec2, Vec3, warp};
+use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, warp};
 use crate::sampling::Discrete;
 use crate::shape::{Primitive, Sphere, SurfacePoint};
 use crate::texture::{Texture, Textures};
@@ -37,6 +37,11 @@ impl AreaEmitter {
     /// πAL with the texture's mean for L, in W; exact for constant radiance.
     pub fn power(&self, textures: &Textures) -> Rgb {
         textures.mean(self.radiance) * (PI * self.area)
+    }
+
+    /// The centre of its bounds.
+    pub fn middle(&self) -> Vec3 {
+        self.pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(piece.bounds())).center()
     }
 
     /// A point uniformly by area.

@@ -210,6 +210,16 @@ impl Emitter {
         }
     }
 
+    /// A point in the midst of it; `None` if it is infinitely far away.
+    pub fn middle(&self) -> Option<Vec3> {
+        match &self.kind {
+            EmitterKind::Area(area) => Some(area.middle()),
+            EmitterKind::Point { position, .. } => Some(*position),
+            EmitterKind::Spot(spot) => Some(spot.position),
+            EmitterKind::Directional { .. } | EmitterKind::Constant(_) | EmitterKind::Environment(_) => None,
+        }
+    }
+
     /// Whether rays that meet nothing see it.
     pub fn is_sky(&self) -> bool {
         matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))

@@ -10,6 +10,8 @@ use crate::film::{FilmSettings, Filter};
 use crate::handle::Arena;
 use crate::material::Material;
 use crate::math::{DVec3, Ray, Transform, Vec2, Vec3};
+use crate::medium::Boundary;
+use crate::medium::Media;
 use crate::scene::Scene;
 use crate::shape::{Geometry, Mesh, Shape};
 use crate::texture::{Image, Textures};
@@ -36,7 +38,7 @@ fn empty() -> Scene {
         groups: Arena::default(),
         instances: Vec::new(),
         lights: Vec::new(),
-        media: crate::medium::Media::default(),
+        media: Media::default(),
     }
 }
 
@@ -61,7 +63,7 @@ fn lamp(geometry: Geometry, to_world: Transform, flip_normals: bool) -> World {
         material,
         emission,
         flip_normals,
-        boundary: crate::medium::Boundary::default(),
+        boundary: Boundary::default(),
     });
     World::new(scene).expect("a sound scene")
 }

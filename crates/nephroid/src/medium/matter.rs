@@ -31,6 +31,25 @@ pub(crate) struct Profile {
 }
 
 impl Profile {
+    /// Samples a distance between two by the transmittance of the mean channel; the farther may be infinite.
+    pub fn sample(&self, u: f32, from: f32, to: f32) -> f32 {
+        let sigma = self.sigma_t.mean();
+        if sigma == 0.0 {
+            return from + u * (to - from);
+        }
+        let share = -real::exp_m1(-sigma * (to - from));
+        (from - real::ln(1.0 - u * share) / sigma).min(to)
+    }
+
+    /// The density of [`Self::sample`] per length.
+    pub fn pdf(&self, t: f32, from: f32, to: f32) -> f32 {
+        let sigma = self.sigma_t.mean();
+        if sigma == 0.0 {
+            return 1.0 / (to - from);
+        }
+        sigma * real::exp(-sigma * (t - from)) / -real::exp_m1(-sigma * (to - from))
+    }
+
     /// Transmittance from the origin to `t`.
     #[inline]
     pub fn transmittance(&self, t: f32) -> Rgb {
@@ -91,6 +110,16 @@ impl Matter {
         attenuation(self.sigma_t, t_max)
     }
 
+    /// The transmittance of a way in a medium that is the same everywhere.
+    pub fn attenuation(&self, length: f32) -> Rgb {
+        attenuation(self.sigma_t, length)
+    }
+
+    /// How far light may come through, along any ray, before less than 2·10⁻⁹ of every channel is left.
+    pub fn reach(&self, _ray: &Ray) -> f32 {
+        20.0 / self.sigma_t.min_channel()
+    }
+
     /// Goes along a ray with a direction of unit length, at most to `t_max`, which may be infinite, with light that carries
     /// `carried`, to which the channel that decides is fitted. Right in the mean for every channel.
     pub fn travel(&self, _ray: &Ray, t_max: f32, carried: Rgb, sampler: &mut Sampler) -> Passage {
@@ -111,10 +140,21 @@ impl Matter {
         }
     }
 
+    /// The radiance that the medium itself gives off towards the origin of a ray with a direction of unit length,
+    /// from its way to `t_max`, in W/(m²·sr); right in the mean.
+    pub fn emitted(&self, _ray: &Ray, t_max: f32, _sampler: &mut Sampler) -> Rgb {
+        self.sigma_t.zip(self.emission, |sigma_t, emission| emission * lit_length(sigma_t, t_max))
+    }
+
     /// The transmittance along a ray with a direction of unit length, up to `t_max`, without noise.
     pub fn profile(&self, _ray: &Ray, _t_max: f32) -> Profile {
         Profile { sigma_t: self.sigma_t }
     }
+}
+
+/// The integral of the transmittance up to t: (1 − e^(−σt)) / σ, and t where there is nothing.
+fn lit_length(sigma_t: f32, t: f32) -> f32 {
+    if sigma_t > 0.0 { -real::exp_m1(-sigma_t * t) / sigma_t } else { t }
 }
 
 /// e^(−σt), and 1 where there is nothing even on an infinite way.

@@ -6,7 +6,6 @@ mod matter;
 mod phase;
 
 pub use grid::{Grid, GridValues};
-#[expect(unused_imports, reason = "the world will")]
 pub(crate) use matter::{Matter, Passage, Profile};
 pub use phase::{Phase, PhaseSample};
 

@@ -11,6 +11,8 @@ mod kernel;
 mod map;
 mod payload;
 mod photon;
+mod stub;
+pub use stub::*;
 
 #[cfg(test)]
 mod estimate_tests;

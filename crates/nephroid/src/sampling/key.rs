@@ -14,6 +14,10 @@ pub enum Stream {
     Masks = 5,
     /// Rounding of what a photon map keeps of a photon.
     Rounding = 6,
+    /// Photon paths that fill the map of light in media.
+    VolumePhotons = 7,
+    /// Photon paths that fill the map of caustics in media.
+    VolumeCausticPhotons = 8,
 }
 
 /// A 64-bit hash of what identifies a sequence: (seed, iteration, stream, path, …).

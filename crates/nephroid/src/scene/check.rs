@@ -358,6 +358,8 @@ mod tests {
     use crate::handle::Arena;
     use crate::light::Light;
     use crate::math::{Affine2, DVec3, Vec2};
+    use crate::medium::Boundary;
+    use crate::medium::Media;
     use crate::shape::Shape;
     use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
 
@@ -377,7 +379,7 @@ mod tests {
             groups: Arena::default(),
             instances: Vec::new(),
             lights: Vec::new(),
-            media: crate::medium::Media::default(),
+            media: Media::default(),
         }
     }
 
@@ -398,7 +400,7 @@ mod tests {
             material,
             emission: Some(white),
             flip_normals: false,
-            boundary: crate::medium::Boundary::default(),
+            boundary: Boundary::default(),
         };
         scene.shapes.push(shape);
         assert_eq!(

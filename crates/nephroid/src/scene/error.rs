@@ -34,6 +34,15 @@ pub struct SceneError {
     pub message: String,
 }
 
+/// Something that may not be meant so; the scene is rendered as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// What it is about.
+    pub subject: Subject,
+    /// What is odd and what to write instead.
+    pub message: String,
+}
+
 /// Every problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneErrors(pub Vec<SceneError>);

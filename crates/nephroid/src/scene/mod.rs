@@ -4,7 +4,7 @@ mod check;
 mod error;
 
 pub(crate) use check::check;
-pub use error::{SceneError, SceneErrors, Subject};
+pub use error::{Remark, SceneError, SceneErrors, Subject};
 
 use crate::camera::Camera;
 use crate::film::FilmSettings;

@@ -107,6 +107,7 @@ mod tests {
     use crate::handle::Arena;
     use crate::material::Material;
     use crate::math::{DVec3, Transform, Vec3, offset_origin, warp};
+    use crate::medium::Boundary;
     use crate::sampling::{Key, Sampler, Sequence, Stream};
     use crate::texture::Textures;
 
@@ -121,7 +122,7 @@ mod tests {
             material,
             emission: None,
             flip_normals: false,
-            boundary: crate::medium::Boundary::default(),
+            boundary: Boundary::default(),
         }
     }
 

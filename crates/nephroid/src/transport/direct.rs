@@ -1,12 +1,12 @@
 //! Direct light by next event estimation.
 
 use crate::color::Rgb;
-use crate::light::Emitter;
 use crate::material::{Bsdf, Transport};
 use crate::math::Vec3;
+use crate::medium::Phase;
 use crate::sampling::{Sampler, power_heuristic};
 use crate::shape::SurfacePoint;
-use crate::world::{World, leave};
+use crate::world::{Hit, Surroundings, Vantage, World, leave};
 
 /// Which lights next event estimation asks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,29 +27,80 @@ pub(crate) enum Partner {
     BsdfSample,
 }
 
+/// A vertex of a path from the camera, where direct light is estimated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lit<'a> {
+    pub scatterer: Scatterer<'a>,
+    pub wo: Vec3,
+    /// What lies on the side of `wo`.
+    pub inside: Surroundings,
+}
+
+/// What scatters light, and how.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Scatterer<'a> {
+    /// A surface.
+    Surface { hit: &'a Hit, bsdf: &'a Bsdf },
+    /// A medium at a point.
+    Medium { position: Vec3, phase: Phase },
+}
+
+impl<'a> Lit<'a> {
+    fn vantage(&self) -> Vantage<'a> {
+        match self.scatterer {
+            Scatterer::Surface { hit, .. } => Vantage::Surface(&hit.point),
+            Scatterer::Medium { position, .. } => Vantage::Space(position),
+        }
+    }
+
+    /// What is scattered towards `wo` of the radiance from `wi`, per solid angle: f·cos, or the phase function.
+    fn eval(&self, wi: Vec3) -> Rgb {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => bsdf.eval(self.wo, wi) * bsdf.cosine(wi),
+            Scatterer::Medium { phase, .. } => Rgb::splat(phase.eval(self.wo, wi)),
+        }
+    }
+
+    fn pdf(&self, wi: Vec3) -> f32 {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => bsdf.pdf(self.wo, wi),
+            Scatterer::Medium { phase, .. } => phase.eval(self.wo, wi),
+        }
+    }
+
+    /// What a ray is in that leaves the vertex.
+    fn beyond(&self, world: &World, direction: Vec3) -> Surroundings {
+        match self.scatterer {
+            Scatterer::Surface { hit, .. } => world.cross(self.inside, hit, -self.wo, direction),
+            Scatterer::Medium { .. } => self.inside,
+        }
+    }
+}
+
 /// Reflected direct light at a surface towards `wo`, in W/(m²·sr), lights sampled only; glossy lobes
 /// also by a ray sampled from the BSDF, weighted by the power heuristic.
 pub(crate) fn direct_light(
     world: &World,
-    point: &SurfacePoint,
+    hit: &Hit,
     bsdf: &Bsdf,
     wo: Vec3,
+    inside: Surroundings,
     lights: DirectLights,
     sampler: &mut Sampler,
 ) -> Rgb {
+    let lit = Lit { scatterer: Scatterer::Surface { hit, bsdf }, wo, inside };
     if !bsdf.has_glossy_lobe() {
-        return sample_lights(world, point, bsdf, wo, lights, Partner::None, sampler);
+        return sample_lights(world, &lit, lights, Partner::None, sampler);
     }
-    let by_lights = sample_lights(world, point, bsdf, wo, lights, Partner::BsdfSample, sampler);
-    by_lights + sample_bsdf(world, point, bsdf, wo, lights, sampler)
+    let by_lights = sample_lights(world, &lit, lights, Partner::BsdfSample, sampler);
+    by_lights + sample_bsdf(world, &lit, hit, bsdf, lights, sampler)
 }
 
-/// The part of [`direct_light`] that lights are sampled for.
+/// The part of direct light that lights are sampled for: W/(m²·sr) at a surface, and in a medium the same for
+/// each unit of scattering, which is W/(m²·sr) as well.
 pub(crate) fn sample_lights(
     world: &World,
-    point: &SurfacePoint,
-    bsdf: &Bsdf,
-    wo: Vec3,
+    lit: &Lit<'_>,
     lights: DirectLights,
     partner: Partner,
     sampler: &mut Sampler,
@@ -58,68 +109,77 @@ pub(crate) fn sample_lights(
     match lights {
         DirectLights::One => {
             let (light, probability, _) = table.sample(sampler.next_1d());
-            let emitter = &world.emitters()[light];
-            one_light(world, point, bsdf, wo, emitter, probability, partner, sampler)
+            one_light(world, lit, light, probability, partner, sampler)
         }
         DirectLights::All => {
-            let each = |e| one_light(world, point, bsdf, wo, e, 1.0, partner, sampler);
-            world.emitters().iter().map(each).sum()
+            (0..world.light_count()).map(|light| one_light(world, lit, light, 1.0, partner, sampler)).sum()
         }
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
-fn one_light(
+/// The light of one lamp, which was chosen with `probability`.
+pub(crate) fn one_light(
     world: &World,
-    point: &SurfacePoint,
-    bsdf: &Bsdf,
-    wo: Vec3,
-    emitter: &Emitter,
+    lit: &Lit<'_>,
+    light: usize,
     probability: f32,
     partner: Partner,
     sampler: &mut Sampler,
 ) -> Rgb {
-    let u = sampler.next_2d();
-    let Some(incident) = emitter.sample_incident(world.lookup(), point.position, u) else {
+    let (u, from) = (sampler.next_2d(), lit.vantage());
+    let emitter = &world.emitters()[light];
+    let Some(incident) = emitter.sample_incident(world.lookup(), from.position(), u) else {
         return Rgb::BLACK;
     };
-    let f_cos = bsdf.eval(wo, incident.wi) * bsdf.cosine(incident.wi);
-    if (f_cos * incident.radiance).is_black() || !world.visible(point, incident.wi, &incident.source) {
+    let scattered = lit.eval(incident.wi) * incident.radiance;
+    if scattered.is_black() {
+        return Rgb::BLACK;
+    }
+    let inside = lit.beyond(world, incident.wi);
+    let through = world.light_through(from, inside, incident.wi, &incident.source, sampler);
+    if through.is_black() {
         return Rgb::BLACK;
     }
     let pdf = incident.pdf_solid_angle * probability;
     let weight = match partner {
-        Partner::BsdfSample if !incident.dirac => power_heuristic(pdf, bsdf.pdf(wo, incident.wi)),
+        Partner::BsdfSample if !incident.dirac => power_heuristic(pdf, lit.pdf(incident.wi)),
         _ => 1.0,
     };
-    f_cos * incident.radiance * (weight / pdf)
+    scattered * through * (weight / pdf)
 }
 
 /// The part of [`direct_light`] that a direction is sampled from the BSDF for.
 fn sample_bsdf(
     world: &World,
-    point: &SurfacePoint,
+    lit: &Lit<'_>,
+    hit: &Hit,
     bsdf: &Bsdf,
-    wo: Vec3,
     lights: DirectLights,
     sampler: &mut Sampler,
 ) -> Rgb {
     let (u, u_lobe) = (sampler.next_2d(), sampler.next_1d());
-    let Some(sample) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { return Rgb::BLACK };
-    let mut ray = leave(point, sample.wi);
-    let mut seen = Rgb::BLACK;
+    let Some(sample) = bsdf.sample(lit.wo, u, u_lobe, Transport::Radiance) else { return Rgb::BLACK };
+    let from = hit.point.position;
+    let mut inside = lit.beyond(world, sample.wi);
+    let mut ray = leave(&hit.point, sample.wi);
+    let (mut seen, mut through) = (Rgb::BLACK, Rgb::WHITE);
     loop {
-        let Some(hit) = world.intersect(&ray) else {
-            seen += sky_by_bsdf(world, sample.wi, sample.pdf_solid_angle, lights);
+        let hit = world.intersect(&ray);
+        if let Some(matter) = world.matter(inside) {
+            through *= matter.transmittance(&ray, hit.map_or(f32::INFINITY, |h| h.t), sampler);
+        }
+        let Some(hit) = hit else {
+            seen += through * sky_by_bsdf(world, sample.wi, sample.pdf_solid_angle, lights);
             return sample.weight * seen;
         };
         seen += world.emitted(&hit, -ray.direction).map_or(Rgb::BLACK, |(light, radiance)| {
-            let pdf = light_pdf(world, light, point.position, &hit.point, lights);
-            radiance * power_heuristic(sample.pdf_solid_angle, pdf)
+            let pdf = light_pdf(world, light, from, &hit.point, lights);
+            through * radiance * power_heuristic(sample.pdf_solid_angle, pdf)
         });
         if !world.bsdf(&hit, -ray.direction).is_null() {
             return sample.weight * seen;
         }
+        inside = world.cross(inside, &hit, ray.direction, ray.direction);
         ray = leave(&hit.point, ray.direction);
     }
 }

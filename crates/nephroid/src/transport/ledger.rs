@@ -7,17 +7,20 @@ pub struct Balance {
     pub emitted: [f64; 3],
     /// What surfaces took, booked before roulette.
     pub absorbed: [f64; 3],
+    /// What media took, ambient fog's attenuation included.
+    pub absorbed_by_media: [f64; 3],
     /// What left the scene.
     pub escaped: [f64; 3],
     /// What an option such as a depth limit cut off.
     pub ended: [f64; 3],
-    /// What roulette took less what it gave to survivors: zero in the mean.
+    /// What roulette took less what it gave to survivors, and the same of distances in media that were
+    /// sampled for all channels at once: zero in the mean.
     pub roulette: [f64; 3],
     /// Sum of squares of the roulette entries of single paths, for the mean of the channels.
     roulette_sq: f64,
 }
 
-/// The energy of a photon pass: emitted = absorbed + escaped + ended + roulette, for each light.
+/// The energy of a photon pass: emitted = absorbed by surfaces and by media + escaped + ended + roulette, for each light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// One for each light, in the order of the world's lights.
@@ -39,6 +42,7 @@ impl Ledger {
             for (to, from) in [
                 (&mut mine.emitted, theirs.emitted),
                 (&mut mine.absorbed, theirs.absorbed),
+                (&mut mine.absorbed_by_media, theirs.absorbed_by_media),
                 (&mut mine.escaped, theirs.escaped),
                 (&mut mine.ended, theirs.ended),
                 (&mut mine.roulette, theirs.roulette),
@@ -60,6 +64,7 @@ impl Ledger {
             .map(|b| Balance {
                 emitted: scale(b.emitted),
                 absorbed: scale(b.absorbed),
+                absorbed_by_media: scale(b.absorbed_by_media),
                 escaped: scale(b.escaped),
                 ended: scale(b.ended),
                 roulette: scale(b.roulette),
@@ -71,11 +76,14 @@ impl Ledger {
 }
 
 impl Balance {
-    /// Mean of the channels of emitted − absorbed − escaped − ended − roulette, relative to what was
+    /// Mean of the channels of emitted − absorbed (by surfaces and media) − escaped − ended − roulette, relative to what was
     /// emitted: rounding, and nothing else.
     pub fn imbalance(&self) -> f64 {
         let residue: f64 = (0..3)
-            .map(|c| self.emitted[c] - self.absorbed[c] - self.escaped[c] - self.ended[c] - self.roulette[c])
+            .map(|c| {
+                let absorbed = self.absorbed[c] + self.absorbed_by_media[c];
+                self.emitted[c] - absorbed - self.escaped[c] - self.ended[c] - self.roulette[c]
+            })
             .sum();
         let emitted: f64 = self.emitted.iter().sum();
         if emitted > 0.0 { residue / emitted } else { residue }
@@ -97,6 +105,10 @@ impl Balance {
 
     pub(super) fn absorb(&mut self, power: Rgb) {
         book(&mut self.absorbed, power);
+    }
+
+    pub(super) fn absorb_in_medium(&mut self, power: Rgb) {
+        book(&mut self.absorbed_by_media, power);
     }
 
     pub(super) fn escape(&mut self, power: Rgb) {

@@ -2,17 +2,25 @@
 
 mod camera_pass;
 mod direct;
+mod emit;
+mod history;
 mod ledger;
 mod photon_pass;
+mod plan;
 mod recorder;
 mod roulette;
+mod start;
 mod walk;
 
 pub(crate) use camera_pass::{CameraPass, Exposure, PixelSample, camera_pass, pixel_key};
 pub use direct::DirectLights;
-pub(crate) use direct::{Partner, direct_light, light_pdf, sample_lights, sky_by_bsdf};
+pub(crate) use direct::{
+    Lit, Partner, Scatterer, direct_light, light_pdf, one_light, sample_lights, sky_by_bsdf,
+};
+pub use history::PhotonKind;
 pub use ledger::{Balance, Ledger};
-pub use photon_pass::{Extras, MapPlan, PhotonPass, PhotonPlan, PhotonTargets, photon_pass};
+pub use photon_pass::{Extras, InMedia, PhotonPass, photon_pass, volume_pass};
+pub use plan::{MapPlan, PhotonPlan, PhotonTargets, VolumeKind};
 pub use recorder::{Bounces, RecordedPass, RecordedPhoton, record_photon_pass};
 pub(crate) use roulette::survival;
-pub use walk::{LightChoice, PhotonKind, WalkSettings};
+pub use walk::{Fog, LightChoice, WalkSettings};

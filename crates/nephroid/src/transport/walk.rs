@@ -1,14 +1,17 @@
-//! The random walk of a photon: from a light, over surfaces, to its end.
+//! The random walk of a photon: from a light, over surfaces and through media, to its end.
 
+use super::history::{History, PhotonKind};
 use super::ledger::Balance;
 use super::roulette::survival;
+use super::start::{Start, start};
 use crate::color::Rgb;
-use crate::light::{EmissionNumbers, SphereSampling};
+use crate::light::SphereSampling;
 use crate::material::Transport;
-use crate::math::{Ray, Vec2, Vec3, warp};
-use crate::photon_map::Photon;
+use crate::math::Ray;
+use crate::medium::{Matter, Passage};
+use crate::photon_map::{Beam, Photon, VolumePhoton};
 use crate::sampling::Sampler;
-use crate::world::{World, leave};
+use crate::world::{Surroundings, World, leave};
 
 /// Which light a photon path starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +35,19 @@ pub struct WalkSettings {
     /// Whether light is sent only where it can meet something that counts for the map. The rest is
     /// booked as escaped without being traced.
     pub aim: bool,
+    /// What media do to photons.
+    pub fog: Fog,
+}
+
+/// What media do to light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fog {
+    /// They scatter and absorb it.
+    #[default]
+    Volume,
+    /// They take from it and do not scatter, and what the camera sees of them is the same everywhere: the
+    /// report's first method, which does not conserve energy.
+    Ambient,
 }
 
 impl Default for WalkSettings {
@@ -41,6 +57,7 @@ impl Default for WalkSettings {
             light_choice: LightChoice::default(),
             sphere_sampling: SphereSampling::default(),
             aim: true,
+            fog: Fog::Volume,
         }
     }
 }
@@ -48,25 +65,14 @@ impl Default for WalkSettings {
 /// The map that paths are traced for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MapKind {
-    /// All light.
+    /// All light on surfaces.
     Global,
-    /// Light that meets a specular surface first.
+    /// Light on surfaces that meets a specular one first.
     Caustic,
-}
-
-/// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
-/// bounce, D any other; null surfaces count as nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PhotonKind {
-    /// L D: belongs to next event estimation, unless direct light comes from the map.
-    Direct,
-    /// L S+ D: the caustic map's.
-    Caustic,
-    /// L S+ D S* D: a caustic's light after one more bounce. The global map's, and known apart, since
-    /// gather rays do not bring it.
-    Afterglow,
-    /// All the rest: the global map's.
-    Global,
+    /// All light in media.
+    Volume,
+    /// Light in media that meets a specular surface first.
+    VolumeCaustic,
 }
 
 /// How a walk goes on after a photon has been shown to its visitor.
@@ -76,124 +82,54 @@ pub(super) enum Next {
     Stop,
 }
 
-/// The start of a path.
-struct Start {
-    light: usize,
+/// What a walk shows its visitor.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Event {
+    /// A photon on a surface with a density to estimate.
+    Surface(Photon),
+    /// The power that is scattered at a collision.
+    Collision(VolumePhoton),
+    /// The way through a medium that begins.
+    Way(Beam),
+}
+
+/// A photon on its way.
+struct Walker {
     ray: Ray,
-    /// W, as if the path were alone. Black if nothing starts.
     power: Rgb,
-    /// What it stands for of all the light that is given off, in W.
-    emitted: Rgb,
+    inside: Surroundings,
+    history: History,
+    light: u32,
+    /// What roulette, and distances that are sampled for one channel, took less what they gave.
+    roulette: [f64; 3],
 }
 
-/// Starts path `path`; `None` if there is no light.
-fn start(
-    world: &World,
-    settings: &WalkSettings,
-    map: MapKind,
-    path: u64,
-    sampler: &mut Sampler,
-) -> Option<Start> {
-    let aims = world.aims();
-    let aim = match map {
-        _ if !settings.aim => None,
-        MapKind::Global => aims.global.as_ref(),
-        MapKind::Caustic => aims.caustic.as_ref(),
-    };
-    let (direction, position) = (sampler.next_2d(), sampler.next_2d());
-    let (u_light, target, u_level) = (sampler.next_1d(), sampler.next_1d(), sampler.next_1d());
-    let (light, probability) = match settings.light_choice {
-        LightChoice::Power => {
-            let table = aim.map(|aim| &aim.lights).or(world.lights_by_power())?;
-            let (light, probability, _) = table.sample(u_light);
-            (light, probability)
+impl Walker {
+    /// Goes on with other power, which is the same in the mean.
+    fn gamble(&mut self, before: Rgb, after: Rgb) {
+        let taken = before - after;
+        for (r, p) in self.roulette.iter_mut().zip(taken.to_array()) {
+            *r += f64::from(p);
         }
-        LightChoice::Equal => {
-            let n = world.light_count();
-            world.lights_by_power()?;
-            ((path % n as u64) as usize, 1.0 / n as f32)
-        }
-    };
-    let sphere = |u: Vec2| match settings.sphere_sampling {
-        SphereSampling::SolidAngle => warp::square_to_sphere(u),
-        SphereSampling::Rejection => rejection_sphere(sampler),
-    };
-    let (emitter, u) = (&world.emitters()[light], EmissionNumbers { position, direction, target });
-    let emission = emitter.emit(world.lookup(), u, aim.map(|aim| &aim.targets), sphere);
-    let ray = match emission.surface {
-        Some(point) => leave(&point, emission.ray.direction),
-        None if emitter.is_infinite() => aims.before_planes(emission.ray),
-        None => emission.ray,
-    };
-    let power = match aim {
-        Some(aim) if !aim.keeps(&ray) => Rgb::BLACK,
-        Some(aim) if emission.power != emission.emitted => level(emission.power, aim.levels[light], u_level),
-        _ => emission.power,
-    };
-    Some(Start { light, ray, power: power / probability, emitted: emission.emitted / probability })
-}
-
-/// Keeps photons that carry much less than others of their light with so much lower a probability,
-/// and makes them carry so much more.
-fn level(power: Rgb, level: f32, u: f32) -> Rgb {
-    let survival = power.mean() / (0.5 * level);
-    match survival {
-        q if q >= 1.0 || power.is_black() => power,
-        q if u < q => power / q,
-        _ => Rgb::BLACK,
-    }
-}
-
-/// A uniform direction by rejection (item 8 of the report, with the normalisation of E3): points of
-/// the cube until one lies in the ball and not so near its centre that its direction is rounding.
-pub(super) fn rejection_sphere(sampler: &mut Sampler) -> Vec3 {
-    loop {
-        let a = sampler.next_2d();
-        let p = 2.0 * Vec3::new(a.x, a.y, sampler.next_1d()) - Vec3::ONE;
-        let length_sq = p.length_squared();
-        if length_sq <= 1.0 && length_sq > 1e-6 {
-            return p / length_sq.sqrt();
-        }
-    }
-}
-
-/// What a path has met so far.
-#[derive(Clone, Copy, Debug, Default)]
-struct History {
-    specular: u32,
-    other: u32,
-    /// Whether the first surface that was not specular was lit by one that was.
-    from_caustic: bool,
-}
-
-impl History {
-    fn bounces(&self) -> u32 {
-        self.specular + self.other
+        self.power = after;
     }
 
-    /// What a photon is that lands now on a surface that is not specular.
-    fn kind(&self) -> PhotonKind {
-        match (self.specular, self.other) {
-            (0, 0) => PhotonKind::Direct,
-            (_, 0) => PhotonKind::Caustic,
-            (_, 1) if self.from_caustic => PhotonKind::Afterglow,
-            _ => PhotonKind::Global,
-        }
+    /// Roulette after a bounce that left `scattered` of the power; false if the path ends.
+    fn survives(&mut self, scattered: Rgb, u: f32) -> bool {
+        let q = survival(self.power, scattered, self.history.bounces());
+        let survives = u < q;
+        self.gamble(scattered, if survives { scattered / q } else { Rgb::BLACK });
+        survives
     }
 
-    fn bounce(&mut self, dirac: bool) {
-        if dirac {
-            self.specular += 1;
-        } else {
-            self.from_caustic |= self.other == 0 && self.specular > 0;
-            self.other += 1;
-        }
+    fn depth(&self) -> u32 {
+        self.history.bounces() + 1
     }
 }
 
 /// Walks photon path `path`, showing every photon that lands on a surface with a density to
-/// estimate to `visit`, and books where the power goes with the light it came from. What `map` has no
-/// use for, from the start on, may be left out.
+/// estimate, or collides in a medium, to `visit`, and books where the power goes with the light it came from.
+/// What `map` has no use for, from the start on, may be left out.
 pub(super) fn walk(
     world: &World,
     settings: &WalkSettings,
@@ -201,10 +137,9 @@ pub(super) fn walk(
     path: u64,
     sampler: &mut Sampler,
     books: &mut [Balance],
-    mut visit: impl FnMut(Photon, PhotonKind) -> Next,
+    mut visit: impl FnMut(Event, PhotonKind) -> Next,
 ) {
-    let Some(Start { light, mut ray, mut power, emitted }) = start(world, settings, map, path, sampler)
-    else {
+    let Some(Start { light, ray, power, emitted }) = start(world, settings, map, path, sampler) else {
         return;
     };
     let book = &mut books[light];
@@ -213,106 +148,153 @@ pub(super) fn walk(
     if power.is_black() {
         return;
     }
-    let mut roulette = [0.0f64; 3];
-    let mut history = History::default();
-    loop {
-        let Some(hit) = world.intersect(&ray) else {
-            book.escape(power);
-            break;
-        };
-        let wo = -ray.direction;
-        let bsdf = world.bsdf(&hit, wo);
-        if bsdf.is_null() {
-            ray = leave(&hit.point, ray.direction);
-            continue;
-        }
-        let depth = history.bounces() + 1;
-        if !bsdf.is_dirac() && !bsdf.is_black() {
-            let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
-            let photon = Photon {
-                position: hit.point.position,
-                // A mask lets some photons pass, and those that land stand for them.
-                power: power / world.opacity(&hit),
-                wi: wo,
-                normal,
-                depth: u16::try_from(depth).unwrap_or(u16::MAX),
-                light: light as u32,
-            };
-            if visit(photon, history.kind()) == Next::Stop {
-                book.end(power);
-                break;
+    let inside = world.light_surroundings(light);
+    let (history, roulette) = (History::default(), [0.0; 3]);
+    let mut walker = Walker { ray, power, inside, history, light: light as u32, roulette };
+    while step(world, settings, &mut walker, sampler, book, &mut visit) == Next::Continue {}
+    book.roulette(walker.roulette);
+}
+
+/// The next segment, and what comes at its end.
+fn step(
+    world: &World,
+    settings: &WalkSettings,
+    walker: &mut Walker,
+    sampler: &mut Sampler,
+    book: &mut Balance,
+    visit: &mut impl FnMut(Event, PhotonKind) -> Next,
+) -> Next {
+    let hit = world.intersect(&walker.ray);
+    if let Some(matter) = world.matter(walker.inside) {
+        let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+        match settings.fog {
+            Fog::Ambient => {
+                let left = walker.power * matter.transmittance(&walker.ray, end, sampler);
+                book.absorb_in_medium(walker.power - left);
+                walker.power = left;
+                if left.is_black() {
+                    return Next::Stop;
+                }
+            }
+            Fog::Volume => {
+                if visit(Event::Way(way(world, walker, matter, end)), walker.history.kind_in_medium())
+                    == Next::Stop
+                {
+                    book.end(walker.power);
+                    return Next::Stop;
+                }
+                let carried = walker.power;
+                match matter.travel(&walker.ray, end, carried, sampler) {
+                    Passage::Through { weight } => walker.gamble(carried, carried * weight),
+                    Passage::Collision { t, weight } => {
+                        walker.gamble(carried, carried * weight);
+                        return collide(settings, walker, matter, t, sampler, book, visit);
+                    }
+                }
             }
         }
-        if settings.max_photon_depth.is_some_and(|max| depth >= max) {
+    }
+    let Some(hit) = hit else {
+        book.escape(walker.power);
+        return Next::Stop;
+    };
+    let wo = -walker.ray.direction;
+    let bsdf = world.bsdf(&hit, wo);
+    if bsdf.is_null() {
+        walker.inside = world.cross(walker.inside, &hit, -wo, -wo);
+        walker.ray = leave(&hit.point, -wo);
+        return Next::Continue;
+    }
+    let (depth, power) = (walker.depth(), walker.power);
+    if !bsdf.is_dirac() && !bsdf.is_black() {
+        let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
+        let photon = Photon {
+            position: hit.point.position,
+            // A mask lets some photons pass, and those that land stand for them.
+            power: power / world.opacity(&hit),
+            wi: wo,
+            normal,
+            depth: u16::try_from(depth).unwrap_or(u16::MAX),
+            light: walker.light,
+        };
+        if visit(Event::Surface(photon), walker.history.kind()) == Next::Stop {
             book.end(power);
-            break;
+            return Next::Stop;
         }
-        let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-        let Some(sample) = bsdf.sample(wo, u, u_lobe, Transport::Flux) else {
-            book.absorb(power);
-            break;
-        };
-        let scattered = power * sample.weight;
-        book.absorb(power - scattered);
-        let q = survival(power, scattered, depth - 1);
-        if u_survive >= q {
-            take(&mut roulette, scattered);
-            break;
-        }
-        let survivor = scattered / q;
-        take(&mut roulette, scattered - survivor);
-        power = survivor;
-        history.bounce(sample.dirac);
-        ray = leave(&hit.point, sample.wi);
     }
-    book.roulette(roulette);
+    if settings.max_photon_depth.is_some_and(|max| depth >= max) {
+        book.end(power);
+        return Next::Stop;
+    }
+    let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+    let Some(sample) = bsdf.sample(wo, u, u_lobe, Transport::Flux) else {
+        book.absorb(power);
+        return Next::Stop;
+    };
+    let scattered = power * sample.weight;
+    book.absorb(power - scattered);
+    if !walker.survives(scattered, u_survive) {
+        return Next::Stop;
+    }
+    walker.history.bounce(sample.dirac);
+    walker.inside = world.cross(walker.inside, &hit, -wo, sample.wi);
+    walker.ray = leave(&hit.point, sample.wi);
+    Next::Continue
 }
 
-fn take(roulette: &mut [f64; 3], power: Rgb) {
-    for (r, p) in roulette.iter_mut().zip(power.to_array()) {
-        *r += f64::from(p);
+/// A collision after so long a way: absorption by weight, and a new direction.
+fn collide(
+    settings: &WalkSettings,
+    walker: &mut Walker,
+    matter: &Matter,
+    t: f32,
+    sampler: &mut Sampler,
+    book: &mut Balance,
+    visit: &mut impl FnMut(Event, PhotonKind) -> Next,
+) -> Next {
+    let (position, wo, depth) = (walker.ray.at(t), -walker.ray.direction, walker.depth());
+    let scattered = walker.power * matter.albedo(position);
+    book.absorb_in_medium(walker.power - scattered);
+    if scattered.is_black() {
+        return Next::Stop;
+    }
+    let photon = VolumePhoton {
+        position,
+        power: scattered,
+        wi: wo,
+        depth: u16::try_from(depth).unwrap_or(u16::MAX),
+        light: walker.light,
+        medium: medium_number(walker.inside),
+    };
+    let stopped = visit(Event::Collision(photon), walker.history.kind_in_medium()) == Next::Stop;
+    if stopped || settings.max_photon_depth.is_some_and(|max| depth >= max) {
+        book.end(scattered);
+        return Next::Stop;
+    }
+    let (u, u_survive) = (sampler.next_2d(), sampler.next_1d());
+    if !walker.survives(scattered, u_survive) {
+        return Next::Stop;
+    }
+    walker.history.collide();
+    walker.ray = Ray::new(position, matter.phase().sample(wo, u).wi);
+    Next::Continue
+}
+
+/// The beam that begins with a walker's next segment, as long as the medium lets light be seen.
+fn way(world: &World, walker: &Walker, matter: &Matter, end: f32) -> Beam {
+    Beam {
+        origin: walker.ray.origin,
+        direction: walker.ray.direction,
+        length: end.min(matter.reach(&walker.ray)).min(2.0 * world.radius()),
+        power: walker.power,
+        depth: u16::try_from(walker.depth()).unwrap_or(u16::MAX),
+        light: walker.light,
+        medium: medium_number(walker.inside),
+        long: true,
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sampling::{Key, Sequence, Stream};
-
-    #[test]
-    fn a_path_decides_the_kind_of_its_photons() {
-        // S: Dirac bounces, D: others; the photon is the D that follows.
-        let kind = |path: &str| {
-            let mut history = History::default();
-            path.chars().for_each(|bounce| history.bounce(bounce == 'S'));
-            history.kind()
-        };
-        assert_eq!(kind(""), PhotonKind::Direct);
-        for path in ["S", "SS", "SSS"] {
-            assert_eq!(kind(path), PhotonKind::Caustic, "{path}");
-        }
-        for path in ["SD", "SSD", "SDS", "SDSS"] {
-            assert_eq!(kind(path), PhotonKind::Afterglow, "{path}");
-        }
-        for path in ["D", "DS", "DD", "SDD", "DSD", "SDSD"] {
-            assert_eq!(kind(path), PhotonKind::Global, "{path}");
-        }
-    }
-
-    #[test]
-    fn rejection_gives_unit_vectors_with_the_moments_of_the_uniform_sphere() {
-        let n = 100_000;
-        let (mut mean, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-        for i in 0..n {
-            let mut s = Sampler::new(Sequence::Independent, Key::new(5, 0, Stream::Pilot), i);
-            let w = rejection_sphere(&mut s);
-            assert!((w.length() - 1.0).abs() < 1e-5);
-            mean += w;
-            squares += w * w;
-        }
-        // Five standard errors: false positives below 4e-6 for the six numbers together.
-        let n = n as f32;
-        assert!((mean / n).abs().max_element() < 5.0 * (1.0 / 3.0 / n).sqrt());
-        assert!((squares / n - Vec3::splat(1.0 / 3.0)).abs().max_element() < 5.0 * (4.0 / 45.0 / n).sqrt());
-    }
+/// The number of a medium as photons in it have it.
+fn medium_number(inside: Surroundings) -> u16 {
+    inside.medium().map_or(u16::MAX, |medium| medium.index() as u16)
 }

@@ -1,7 +1,7 @@
 use super::level::{Item, Level, Other};
 use super::placed::Placed;
 use super::scenery::Scenery;
-use super::{Aims, Surfaced, World};
+use super::{Aims, Surfaced, Surroundings, World};
 use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
@@ -10,6 +10,7 @@ use crate::light::{
 };
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
+use crate::medium::{Matter, Media};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
 use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
@@ -31,7 +32,8 @@ impl World {
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let (emitters, emitter_of_shape) = emitters(&scene, pieces_of_lamps, Target { center, radius });
+        let (emitters, lamps, emitter_of_shape) =
+            emitters(&scene, pieces_of_lamps, Target { center, radius });
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
@@ -47,12 +49,20 @@ impl World {
                     invisible,
                     masked: inside != s.material && !invisible,
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
+                    boundary: s.boundary.is_named().then_some(s.boundary),
                 }
             })
             .collect();
         let transparent = surfaces.iter().any(|s| s.invisible);
         let cutouts = surfaces.iter().any(|s| s.masked);
-        Ok(Self {
+        let Media { list, grids } = &scene.media;
+        // Media that nothing names are nowhere.
+        let anywhere = surfaces.iter().any(|s| s.boundary.is_some())
+            || scene.camera.medium.is_some()
+            || scene.lights.iter().any(|light| light.medium.is_some())
+            || scene.shapes.iter().any(|shape| shape.boundary.light.is_some());
+        let matters = list.iter().take_while(|_| anywhere).map(|m| Matter::new(m, grids)).collect();
+        let mut world = Self {
             scene,
             scenery,
             surfaces,
@@ -64,7 +74,14 @@ impl World {
             camera,
             bounds,
             aims,
-        })
+            lamps,
+            matters,
+            camera_surroundings: Surroundings::default(),
+            light_surroundings: Vec::new(),
+            remarks: Vec::new(),
+        };
+        world.look_around();
+        Ok(world)
     }
 }
 
@@ -217,8 +234,11 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
     }
 }
 
-fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> (Vec<Emitter>, Vec<Option<u32>>) {
-    let mut emitters = Vec::new();
+/// The lights of a scene, what each is in the scene, and the light that each shape is.
+type Emitters = (Vec<Emitter>, Vec<Subject>, Vec<Option<u32>>);
+
+fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> Emitters {
+    let (mut emitters, mut lamps) = (Vec::new(), Vec::new());
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, (shape, pieces)) in scene.shapes.iter().zip(pieces).enumerate() {
         let Some(radiance) = shape.emission else { continue };
@@ -228,10 +248,16 @@ fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> (Vec<
             of_shape[i] = Some(index);
             let power = area.power(&scene.textures);
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });
+            lamps.push(Subject::Shape(i));
         }
     }
-    emitters.extend(scene.lights.iter().filter_map(|light| emitter(scene, light, target)));
-    (emitters, of_shape)
+    for (i, light) in scene.lights.iter().enumerate() {
+        if let Some(emitter) = emitter(scene, light, target) {
+            emitters.push(emitter);
+            lamps.push(Subject::Light(i));
+        }
+    }
+    (emitters, lamps, of_shape)
 }
 
 /// Whether light that leaves a shape cannot meet it again.

@@ -12,6 +12,8 @@ use crate::film::{FilmSettings, Filter};
 use crate::handle::{Arena, Handle};
 use crate::material::Material;
 use crate::math::{Affine2, DVec3, Ray, Transform, Vec2, Vec3};
+use crate::medium::Boundary;
+use crate::medium::Media;
 use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::scene::Scene;
 use crate::shape::{Geometry, Mesh, Shape};
@@ -42,7 +44,7 @@ fn world(
         lights: Vec::new(),
         groups: Arena::default(),
         instances: Vec::new(),
-        media: crate::medium::Media::default(),
+        media: Media::default(),
     };
     let opacity = opacity(&mut scene.textures);
     let reflectance = scene.textures.constant(Rgb::splat(0.5));
@@ -59,7 +61,7 @@ fn world(
             material,
             emission: None,
             flip_normals: false,
-            boundary: crate::medium::Boundary::default(),
+            boundary: Boundary::default(),
         });
     }
     World::new(scene).unwrap()

@@ -8,21 +8,26 @@ mod cutout_tests;
 mod level;
 mod placed;
 mod scenery;
+mod surroundings;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod whereabouts;
 
+pub use surroundings::Surroundings;
+pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
-use crate::light::{Emitter, Lookup, Source};
+use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
 use crate::math::{Bounds, Frame, Ray, Vec3, offset_origin};
+use crate::medium::{Boundary, Matter};
 use crate::sampling::Discrete;
-use crate::scene::Scene;
+use crate::scene::{Remark, Scene, Subject};
 use crate::shape::SurfacePoint;
 use crate::texture::Texture;
 
@@ -45,6 +50,13 @@ pub struct World {
     camera: CameraRays,
     bounds: Bounds,
     aims: Aims,
+    /// What each emitter is in the scene.
+    lamps: Vec<Subject>,
+    /// The media of the scene, if any of them is anywhere.
+    matters: Vec<Matter>,
+    camera_surroundings: Surroundings,
+    light_surroundings: Vec<Surroundings>,
+    remarks: Vec<Remark>,
 }
 
 /// What rays ask of a shape.
@@ -58,6 +70,8 @@ struct Surfaced {
     masked: bool,
     /// The radiance and number of the light that it is.
     light: Option<(Handle<Texture>, u32)>,
+    /// What it lies between, if it names any medium.
+    boundary: Option<Boundary>,
 }
 
 /// Where a ray meets a surface, as the search finds it: see [`World::nearest`].
@@ -88,10 +102,6 @@ pub struct Hit {
     pub shape: u32,
 }
 
-/// The shortening of shadow rays that keeps them off the light they end at; relative, as both ends
-/// have been moved off their surfaces already.
-const SHADOW_END: f32 = 1.0 - 1e-5;
-
 impl World {
     /// The scene it was made from.
     pub fn scene(&self) -> &Scene {
@@ -101,6 +111,16 @@ impl World {
     /// Bounds of the finite shapes and the instances; empty if there are none.
     pub fn bounds(&self) -> Bounds {
         self.bounds
+    }
+
+    /// Radius of a sphere around the finite shapes and the camera.
+    pub(crate) fn radius(&self) -> f32 {
+        self.aims.reach
+    }
+
+    /// What of the scene may not be meant so.
+    pub fn remarks(&self) -> &[Remark] {
+        &self.remarks
     }
 
     /// How many lights there are.
@@ -185,20 +205,6 @@ impl World {
         } else {
             self.scenery.any(ray, |_| true)
         }
-    }
-
-    /// Whether light from `source` in direction `wi` reaches a point of a surface.
-    pub fn visible(&self, from: &SurfacePoint, wi: Vec3, source: &Source) -> bool {
-        let origin = offset_origin(from.position, from.error, from.ng, wi);
-        let ray = match source {
-            Source::Infinity => Ray::new(origin, wi),
-            Source::Point(p) => Ray { origin, direction: *p - origin, t_max: SHADOW_END },
-            Source::Surface(s) => {
-                let end = offset_origin(s.position, s.error, s.ng, -wi);
-                Ray { origin, direction: end - origin, t_max: SHADOW_END }
-            }
-        };
-        !self.occluded(&ray)
     }
 
     /// What a shape is made of, counted as in [`Hit::shape`]; of a masked one what is inside.

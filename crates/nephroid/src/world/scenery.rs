@@ -2,7 +2,7 @@ use super::RayHit;
 use super::level::{Candidate, Item, Level, Other, Searcher};
 use super::placed::Placed;
 use crate::bvh::{Lanes, Simd, Work};
-use crate::math::{Bounds, Ray};
+use crate::math::{Bounds, Ray, Vec2};
 use crate::shape::{Intersection, Mesh, Primitive, SurfacePoint, Triangle};
 
 /// All surfaces of a scene, ready for rays.
@@ -59,6 +59,25 @@ impl Scenery {
             }
             None => self.primitives[hit.primitive as usize].surface(ray, &at, &self.meshes),
         }
+    }
+
+    /// Some point of a shape, in the space of the scene or of its group, without regard to flipped normals.
+    pub fn point_on(&self, shape: usize, u_piece: f32, u: Vec2) -> SurfacePoint {
+        let pick = |n: usize| ((u_piece * n as f32) as usize).min(n - 1);
+        if let Some(number) = self.mesh_of[shape] {
+            let mesh = &self.meshes[number as usize];
+            let index = pick(mesh.triangles.len()) as u32;
+            return Triangle::new(mesh, number, index).sample(mesh, u);
+        }
+        let pieces = self.pieces(shape);
+        pieces[pick(pieces.len())].sample(u, &self.meshes)
+    }
+
+    /// The primitives of a shape that is no mesh.
+    pub fn pieces(&self, shape: usize) -> &[Primitive] {
+        let first = self.owner.partition_point(|&owner| (owner as usize) < shape);
+        let own = self.owner[first..].iter().take_while(|&&owner| owner as usize == shape).count();
+        &self.primitives[first..first + own]
     }
 
     /// Bounds of what is finite; empty if nothing is.

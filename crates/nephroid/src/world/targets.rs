@@ -5,7 +5,7 @@ use crate::material::Material;
 use crate::math::{Bounds, Ray, Vec3, warp};
 use crate::sampling::{Discrete, Key, Sampler, Sequence, Stream};
 use crate::scene::Scene;
-use crate::shape::{Primitive, ShearedRay};
+use crate::shape::{Primitive, Shape, ShearedRay};
 
 use super::is_dirac;
 use super::scenery::Scenery;
@@ -33,7 +33,7 @@ pub(crate) struct Aims {
     pub caustic: Option<Aim>,
     /// Infinite planes, and a length beyond which the rest of the scene ends.
     planes: Vec<Primitive>,
-    reach: f32,
+    pub reach: f32,
 }
 
 /// What the paths of one map are aimed at.
@@ -138,11 +138,12 @@ struct Solid {
     planes: Vec<Primitive>,
 }
 
-/// All but null shapes.
+/// All but null shapes, with those of them behind which another medium begins.
 fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) -> Vec<Solid> {
-    let solid = |shape: usize, material| {
+    let solid = |shape: usize, described: &Shape| {
+        let material = described.material;
         let inside = Material::unmasked(&scene.materials, material);
-        if scene.materials[inside] == Material::Null {
+        if scene.materials[inside] == Material::Null && !described.boundary.is_named() {
             return None;
         }
         let lamp = emitter_of_shape.get(shape).copied().flatten();
@@ -151,11 +152,11 @@ fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) ->
         Some(Solid { lamp, specular, items, planes })
     };
     let mut solids: Vec<_> =
-        scene.shapes.iter().enumerate().filter_map(|(i, shape)| solid(i, shape.material)).collect();
+        scene.shapes.iter().enumerate().filter_map(|(i, shape)| solid(i, shape)).collect();
     let mut first = scene.shapes.len();
     let mut groups = Vec::new();
     for group in scene.groups.iter() {
-        let members = (first..).zip(&group.shapes).filter_map(|(i, shape)| solid(i, shape.material));
+        let members = (first..).zip(&group.shapes).filter_map(|(i, shape)| solid(i, shape));
         groups.push(
             members.map(|solid| (solid.specular, Item::around(&solid.items).bounds)).collect::<Vec<_>>(),
         );
@@ -182,10 +183,8 @@ fn items(scenery: &Scenery, shape: usize, apart: bool) -> (Vec<Item>, Vec<Primit
         let corners = |triangle: &[u32; 3]| Bounds::of(triangle.map(|i| mesh.positions[i as usize]));
         return (mesh.triangles.iter().map(corners).map(Item::of_box).collect(), Vec::new());
     }
-    let first = scenery.owner.partition_point(|&owner| (owner as usize) < shape);
-    let own = scenery.owner[first..].iter().take_while(|&&owner| owner as usize == shape).count();
-    let pieces = &scenery.primitives[first..first + own];
-    let (planes, finite): (Vec<_>, Vec<_>) = pieces.iter().partition(|piece| piece.bounds().is_empty());
+    let (planes, finite): (Vec<_>, Vec<_>) =
+        scenery.pieces(shape).iter().partition(|piece| piece.bounds().is_empty());
     (finite.iter().map(Item::of_piece).collect(), planes)
 }
 

@@ -5,6 +5,8 @@ use crate::bvh::Simd;
 use crate::camera::{Camera, Projection};
 use crate::film::{FilmSettings, Filter};
 use crate::math::{DVec3, Transform, Vec2, warp};
+use crate::medium::Boundary;
+use crate::medium::Media;
 use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::shape::{Geometry, Group, Instance, Mesh, Primitive, Shape, ShearedRay, Triangle};
 use crate::texture::Textures;
@@ -27,7 +29,7 @@ fn empty() -> Scene {
         groups: Arena::default(),
         instances: Vec::new(),
         lights: Vec::new(),
-        media: crate::medium::Media::default(),
+        media: Media::default(),
     }
 }
 
@@ -40,7 +42,7 @@ fn shape(scene: &Scene, geometry: Geometry, to_world: Transform) -> Shape {
         material,
         emission: None,
         flip_normals: false,
-        boundary: crate::medium::Boundary::default(),
+        boundary: Boundary::default(),
     }
 }
 

@@ -1,6 +1,6 @@
 use crate::light::SphereSampling;
 use crate::photon_map::{Bandwidth, Kernel, PhotonMap};
-use crate::transport::{DirectLights, Extras, LightChoice, PhotonTargets, WalkSettings};
+use crate::transport::{DirectLights, Extras, Fog, LightChoice, PhotonTargets, VolumeKind, WalkSettings};
 
 /// Settings of the photon mapper. No length in it has a default in scene units.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,23 @@ pub struct PhotonMapperConfig {
     /// Whether photons are sent only where they can meet a surface, those for the caustic map only where
     /// they can meet a specular one.
     pub aim: bool,
+    /// Photons wanted in each map of light in media, or beams; by default as many as suit the kind.
+    pub volume_photons: Option<u64>,
+    /// What these maps hold.
+    pub volume_kind: VolumeKind,
+    /// How the light of points is summed along a ray.
+    pub volume_estimate: VolumeEstimate,
+    /// Photons of an estimate in a medium, k: in the ball around a photon for the beam estimate, and around a point
+    /// for the march. By default as many as suit the estimate.
+    pub volume_neighbours: Option<u32>,
+    /// Beams that a ray passes within their radius.
+    pub beam_crossings: f32,
+    /// Length of the steps of the report's march, in scene units; by default the 128th part of the scene.
+    pub march_step: Option<f32>,
+    /// Where light comes from that a medium scatters once.
+    pub single_scatter: DirectSource,
+    /// What media do to light.
+    pub fog: Fog,
     /// What part of the light the picture shows.
     pub show: Show,
 }
@@ -63,6 +80,14 @@ impl Default for PhotonMapperConfig {
             light_choice: LightChoice::Power,
             sphere_sampling: SphereSampling::SolidAngle,
             aim: true,
+            volume_photons: None,
+            volume_kind: VolumeKind::Points,
+            volume_estimate: VolumeEstimate::Beam,
+            volume_neighbours: None,
+            beam_crossings: 50.0,
+            march_step: None,
+            single_scatter: DirectSource::Rays,
+            fog: Fog::Volume,
             show: Show::All,
         }
     }
@@ -76,6 +101,20 @@ pub enum DirectSource {
     Rays,
     /// Photons, for comparison: they find their way through glass, and blur shadows.
     Map,
+}
+
+/// How the light that photons leave in a medium is summed along a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VolumeEstimate {
+    /// The beam radiance estimate: each photon near the ray, blurred across it (Jarosz et al. 2008).
+    #[default]
+    Beam,
+    /// The photons near points of the ray, in steps as long as the estimate blurs, each with the exact integral
+    /// of its transmittance and a point by chance.
+    March,
+    /// The report's march: steps of one length, σ_s L_i Δx + e^(−σ_t Δx) L for each. Too bright by
+    /// τ / (1 − e^(−τ)) for steps of optical depth τ.
+    MarchReport,
 }
 
 /// Whether indirect light on surfaces comes from rays that read the maps where they land, rather
@@ -106,6 +145,8 @@ pub enum Show {
     Global,
     /// What the caustic map holds.
     Caustic,
+    /// What media scatter and give off.
+    Medium,
 }
 
 impl PhotonMapperConfig {
@@ -116,6 +157,7 @@ impl PhotonMapperConfig {
             light_choice: self.light_choice,
             sphere_sampling: self.sphere_sampling,
             aim: self.aim,
+            fog: self.fog,
         }
     }
 
@@ -123,6 +165,27 @@ impl PhotonMapperConfig {
     pub(crate) fn shows_caustics(&self) -> bool {
         matches!(self.show, Show::All | Show::Indirect | Show::Caustic)
             || (self.show == Show::Direct && self.direct == DirectSource::Map)
+    }
+
+    /// Whether light that media send to the camera is shown.
+    pub(crate) fn shows_media(&self) -> bool {
+        matches!(self.show, Show::All | Show::Medium)
+    }
+
+    /// Photons or beams wanted in each map of light in media.
+    pub fn volume_photons(&self) -> u64 {
+        self.volume_photons.unwrap_or(match self.volume_kind {
+            VolumeKind::Points => 200_000,
+            VolumeKind::Beams => 20_000,
+        })
+    }
+
+    /// Photons of an estimate in a medium.
+    pub(crate) fn volume_neighbours(&self) -> u32 {
+        self.volume_neighbours.unwrap_or(match self.volume_estimate {
+            VolumeEstimate::Beam => 8,
+            VolumeEstimate::March | VolumeEstimate::MarchReport => self.neighbours,
+        })
     }
 
     pub(crate) fn targets(&self) -> PhotonTargets {
@@ -136,12 +199,15 @@ impl PhotonMapperConfig {
             emit: self.emit,
             emit_max: self.emit_max,
             store_direct: self.direct == DirectSource::Map,
+            volume: if self.shows_media() { self.volume_photons() } else { 0 },
+            volume_kind: self.volume_kind,
+            store_single_scatter: self.single_scatter == DirectSource::Map,
         }
     }
 
     /// What photon passes store besides, where gather rays are sent or not.
     pub(crate) fn extras(&self, gathers: bool) -> Extras {
-        Extras { direct: self.direct == DirectSource::Map, afterglow: gathers }
+        Extras { direct: self.direct == DirectSource::Map, unseen: gathers }
     }
 
     /// Gather rays of each camera sample; `None` reads the maps on the spot.

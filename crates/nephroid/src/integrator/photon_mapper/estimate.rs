@@ -1,6 +1,8 @@
 //! The camera side of photon mapping: from a camera ray to radiance.
 
 mod gather_rays;
+mod in_scatter;
+mod march;
 
 use super::Maps;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
@@ -13,7 +15,8 @@ use crate::photon_map::{Bandwidth, NearestList, Query, gather};
 use crate::sampling::{Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
-use crate::world::{World, leave};
+use crate::world::{Hit, Surroundings, World, leave};
+use in_scatter::Segment;
 
 /// Surfaces that both reflect and refract, along a camera path, at which both lobes are followed, before one
 /// is chosen by chance: the reflection in a glass ball then shows no noise, at up to four times the rays.
@@ -30,6 +33,23 @@ struct Tools<'t, P> {
     probe: &'t mut P,
 }
 
+/// A ray and what it starts in.
+#[derive(Clone, Copy)]
+struct Way {
+    ray: Ray,
+    inside: Surroundings,
+}
+
+impl Way {
+    /// Onward from a surface that it met.
+    fn pass(&self, world: &World, hit: &Hit, direction: Vec3) -> Self {
+        Self {
+            ray: leave(&hit.point, direction),
+            inside: world.cross(self.inside, hit, self.ray.direction, direction),
+        }
+    }
+}
+
 /// What the camera pass of one iteration looks up.
 pub(crate) struct PhotonMapper<'a> {
     world: &'a World,
@@ -42,6 +62,7 @@ pub(crate) struct PhotonMapper<'a> {
     global_bandwidth: Bandwidth,
     caustic_bandwidth: Bandwidth,
     afterglow_bandwidth: Bandwidth,
+    haze_bandwidth: Bandwidth,
     /// Radius of the estimates where gather rays land.
     global_radius: f32,
 }
@@ -80,17 +101,23 @@ impl Branch {
 
 /// A surface that scatters light other than specularly, as a path meets it.
 struct Vertex<'a> {
-    point: &'a SurfacePoint,
+    hit: &'a Hit,
     bsdf: &'a Bsdf,
     wo: Vec3,
     /// Segments from the lens to here.
     depth: u32,
+    /// What lies on the side of `wo`.
+    inside: Surroundings,
 }
 
-impl Vertex<'_> {
+impl<'a> Vertex<'a> {
+    fn point(&self) -> &'a SurfacePoint {
+        &self.hit.point
+    }
+
     /// The geometric normal on the side it is seen from.
     fn facing_normal(&self) -> Vec3 {
-        if self.wo.dot(self.point.ng) > 0.0 { self.point.ng } else { -self.point.ng }
+        if self.wo.dot(self.point().ng) > 0.0 { self.point().ng } else { -self.point().ng }
     }
 }
 
@@ -111,6 +138,7 @@ impl<'a> PhotonMapper<'a> {
             global_bandwidth: config.bandwidth(&maps.global),
             caustic_bandwidth: config.bandwidth(&maps.caustic),
             afterglow_bandwidth: config.bandwidth(&maps.afterglow),
+            haze_bandwidth: config.bandwidth(&maps.haze),
             global_radius: config.radius.unwrap_or_else(|| maps.global.typical_radius(GATHER_PHOTONS)),
         }
     }
@@ -123,7 +151,7 @@ impl<'a> PhotonMapper<'a> {
     #[expect(clippy::too_many_arguments, reason = "the state of a path that splits in two")]
     fn trace<P: Probe>(
         &self,
-        mut ray: Ray,
+        mut way: Way,
         mut throughput: Rgb,
         mut depth: u32,
         branch: Branch,
@@ -134,42 +162,50 @@ impl<'a> PhotonMapper<'a> {
         tools.probe.begin(None, Rgb::WHITE);
         while self.fits(depth) {
             tools.probe.carry(throughput);
-            let Some(hit) = self.world.intersect(&ray) else {
-                let sky = self.world.sky(ray.direction);
+            let hit = self.world.intersect(&way.ray);
+            if let Some(matter) = self.world.matter(way.inside) {
+                let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth };
+                let reads = sample.index.is_multiple_of(self.stride);
+                let (seen, through) = self.through_medium(&segment, reads, &mut sample.sampler, tools);
+                out.medium += throughput * seen;
+                throughput *= through;
+                tools.probe.carry(throughput);
+            }
+            let Some(hit) = hit else {
+                let sky = self.world.sky(way.ray.direction);
                 out.emitted += throughput * sky;
                 tools.probe.light(LightPart::Emitted, sky);
                 return;
             };
-            let wo = -ray.direction;
+            let wo = -way.ray.direction;
             if let Some((_, emitted)) = self.world.emitted(&hit, wo) {
                 out.emitted += throughput * emitted;
                 tools.probe.light(LightPart::Emitted, emitted);
             }
             let bsdf = self.world.bsdf(&hit, wo);
             if bsdf.is_null() {
-                ray = leave(&hit.point, ray.direction);
+                way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
             }
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
             if !bsdf.is_dirac() {
-                let vertex = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
+                let vertex = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside };
                 self.shade(&vertex, throughput, branch, sample, tools, out);
                 return;
             }
             let lobes = bsdf.dirac_lobes(wo, Transport::Radiance);
             if let ([Some(a), Some(b)], true) = (lobes, branch.number < 1 << SPLITS) {
                 for (lobe, branch) in [a, b].into_iter().zip(branch.split([&a, &b])) {
-                    let ray = leave(&hit.point, lobe.wi);
-                    self.trace(ray, throughput * lobe.weight, depth + 1, branch, sample, tools, out);
+                    let way = way.pass(self.world, &hit, lobe.wi);
+                    self.trace(way, throughput * lobe.weight, depth + 1, branch, sample, tools, out);
                 }
                 return;
             }
-            let Some((next, carried)) =
-                scatter(&bsdf, &hit.point, wo, throughput, depth - 1, &mut sample.sampler)
-            else {
+            let Some((next, carried)) = scatter(&bsdf, wo, throughput, depth - 1, &mut sample.sampler) else {
                 return;
             };
-            (ray, throughput) = (next, carried);
+            (way, throughput) = (way.pass(self.world, &hit, next), carried);
             depth += 1;
         }
     }
@@ -198,7 +234,7 @@ impl<'a> PhotonMapper<'a> {
         if !sample.index.is_multiple_of(self.stride) {
             return;
         }
-        let throughput = throughput * self.stride as f32;
+        let throughput *= self.stride as f32;
         tools.probe.carry(throughput);
         let look_up = |map, direct, other| LookUp { map, direct, other };
         if self.config.shows_caustics() {
@@ -238,7 +274,7 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            let guide = self.maps.guides.at(vertex.point.position, vertex.facing_normal(), tools.neighbors);
+            let guide = self.maps.guides.at(vertex.point().position, vertex.facing_normal(), tools.neighbors);
             let wanted = self.weight_of_gathering(&bsdf, guide.as_ref(), beside, branch.share);
             let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
             let key = sample.key.with(branch.number);
@@ -253,14 +289,14 @@ impl<'a> PhotonMapper<'a> {
             out.global += throughput * (found / rays as f32);
             tools.probe.begin(None, throughput);
             if gathers {
-                out.global += throughput * self.afterglow(&vertex, tools);
+                out.global += throughput * self.unseen(&vertex, tools);
             }
         }
     }
 
     fn direct(&self, vertex: &Vertex<'_>, sampler: &mut Sampler) -> Rgb {
-        let Vertex { point, bsdf, wo, .. } = *vertex;
-        direct_light(self.world, point, bsdf, wo, self.config.direct_lights, sampler)
+        let Vertex { hit, bsdf, wo, inside, .. } = *vertex;
+        direct_light(self.world, hit, bsdf, wo, inside, self.config.direct_lights, sampler)
     }
 
     /// Reflected radiance by density estimation, direct (L D) and other photons apart.
@@ -271,17 +307,18 @@ impl<'a> PhotonMapper<'a> {
         bandwidth: Bandwidth,
         tools: &mut Tools<'_, P>,
     ) -> (Rgb, Rgb) {
-        let Vertex { point, bsdf, wo, depth } = *vertex;
+        let Vertex { hit, bsdf, wo, depth, .. } = *vertex;
         let map = match wanted.map {
             MapName::Global => &self.maps.global,
             MapName::Caustic => &self.maps.caustic,
             MapName::Afterglow => &self.maps.afterglow,
+            MapName::Haze => &self.maps.haze,
         };
         if map.is_empty() || bsdf.is_black() {
             return (Rgb::BLACK, Rgb::BLACK);
         }
         let query = Query {
-            position: point.position,
+            position: hit.point.position,
             normal: vertex.facing_normal(),
             max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
         };
@@ -306,24 +343,23 @@ impl Estimator for PhotonMapper<'_> {
         probe: &mut P,
     ) -> Components {
         let mut out = Components::default();
-        let ray = sample.ray;
-        self.trace(ray, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
+        let way = Way { ray: sample.ray, inside: self.world.camera_surroundings() };
+        self.trace(way, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
         out
     }
 }
 
-/// Samples the next segment of a camera path, with roulette.
+/// Samples the next direction of a camera path, with roulette.
 fn scatter(
     bsdf: &Bsdf,
-    point: &SurfacePoint,
     wo: Vec3,
     throughput: Rgb,
     bounces: u32,
     sampler: &mut Sampler,
-) -> Option<(Ray, Rgb)> {
+) -> Option<(Vec3, Rgb)> {
     let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
     let BsdfSample { wi, weight, radiance_scale, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
     let carried = throughput * weight;
     let q = survival(throughput, carried / radiance_scale, bounces);
-    (u_survive < q).then(|| (leave(point, wi), carried / q))
+    (u_survive < q).then(|| (wi, carried / q))
 }

@@ -1,19 +1,21 @@
 //! Two-pass photon mapping (Jensen 1996, 2001; the report's §2 in its corrected form): photons from
 //! the lights into a global and a caustic map
-//! (and one of the light of caustics a bounce later), then camera paths that estimate radiance from them.
+//! (and one of the light of caustics a bounce later), and in media into maps of their own, then camera paths that estimate radiance from them.
 
 mod config;
 mod estimate;
 mod guide;
 mod guides;
+mod volume_index;
 
-pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show};
+pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use estimate::PhotonMapper;
 use guides::Guides;
+pub(crate) use volume_index::VolumeIndex;
 
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::PhotonMap;
-use crate::transport::{Ledger, PhotonPlan, photon_pass};
+use crate::transport::{Ledger, PhotonPlan, photon_pass, volume_pass};
 use crate::world::World;
 
 /// The photon maps of one iteration.
@@ -22,6 +24,10 @@ pub(crate) struct Maps {
     pub caustic: PhotonMap,
     /// Light of caustics after one more bounce; empty unless gather rays are sent.
     pub afterglow: PhotonMap,
+    /// Light that surfaces have from media; empty unless gather rays are sent.
+    pub haze: PhotonMap,
+    /// Light in media but for caustics, and those.
+    pub volumes: [VolumeIndex; 2],
     guides: Guides,
     pub ledger: Ledger,
 }
@@ -40,22 +46,43 @@ impl Maps {
         let settings = config.walk_settings();
         let extras = config.extras(gathers);
         let pass = photon_pass(world, &settings, plan, extras, seed, iteration, observer)?;
-        let work = Work::begin(observer, Phase::Maps, 3);
-        let build = |photons| {
+        let volumes = Self::volumes(world, config, plan, seed, iteration, observer)?;
+        let work = Work::begin(observer, Phase::Maps, 4);
+        let map = |photons| {
             let map = PhotonMap::build(photons);
             work.advance(1);
             map
         };
-        let (global, (caustic, afterglow)) = rayon::join(
-            || build(pass.global),
-            || rayon::join(|| build(pass.caustic), || build(pass.afterglow)),
+        let ((global, caustic), (afterglow, haze)) = rayon::join(
+            || rayon::join(|| map(pass.global), || map(pass.caustic)),
+            || rayon::join(|| map(pass.afterglow), || map(pass.haze)),
         );
-        Some(Self::new([global, caustic, afterglow], gathers, pass.ledger))
+        Some(Self::new([global, caustic, afterglow, haze], volumes, gathers, pass.ledger))
     }
 
-    /// Of the global, the caustic and the afterglow map.
-    pub fn new([global, caustic, afterglow]: [PhotonMap; 3], gathers: bool, ledger: Ledger) -> Self {
+    /// The maps of light in media of an iteration. `None` if cancelled.
+    pub fn volumes(
+        world: &World,
+        config: &PhotonMapperConfig,
+        plan: &PhotonPlan,
+        seed: u64,
+        iteration: u64,
+        observer: &dyn Observer,
+    ) -> Option<[VolumeIndex; 2]> {
+        let (settings, targets) = (config.walk_settings(), config.targets());
+        let [all, caustics] = volume_pass(world, &settings, plan, &targets, seed, iteration, observer)?;
+        let build = |photons| VolumeIndex::build(photons, config);
+        Some(rayon::join(|| build(all), || build(caustics)).into())
+    }
+
+    /// Of the global, the caustic, the afterglow and the haze map, and those of light in media.
+    pub fn new(
+        [global, caustic, afterglow, haze]: [PhotonMap; 4],
+        volumes: [VolumeIndex; 2],
+        gathers: bool,
+        ledger: Ledger,
+    ) -> Self {
         let guides = if gathers { Guides::new(&global) } else { Guides::none() };
-        Self { global, caustic, afterglow, guides, ledger }
+        Self { global, caustic, afterglow, haze, volumes, guides, ledger }
     }
 }

@@ -2,14 +2,14 @@
 
 use std::f32::consts::PI;
 
-use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, scatter};
+use super::in_scatter::Segment;
+use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, Way, scatter};
 use crate::color::Rgb;
 use crate::integrator::{LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, Transport};
 use crate::math::{Ray, Vec3};
 use crate::photon_map::Bandwidth;
 use crate::sampling::Sampler;
-use crate::world::leave;
 
 /// The part of the gather rays that are sent where no photons are near.
 const WEIGHT_WHERE_DARK: f32 = 0.25;
@@ -70,17 +70,21 @@ impl PhotonMapper<'_> {
             light += if far { direct + other } else { direct };
         }
         if !far {
-            light += self.afterglow(vertex, tools);
+            light += self.unseen(vertex, tools);
         }
         light
     }
 
     /// The light of caustics on other surfaces, which gather rays leave out: a small bright caustic
-    /// that few of them chance upon makes white specks, and its photons one bounce on do not.
-    pub(super) fn afterglow<P: Probe>(&self, vertex: &Vertex<'_>, tools: &mut Tools<'_, P>) -> Rgb {
+    /// that few of them chance upon makes white specks, and its photons one bounce on do not. And light that
+    /// media send to the surface.
+    pub(super) fn unseen<P: Probe>(&self, vertex: &Vertex<'_>, tools: &mut Tools<'_, P>) -> Rgb {
         let smooth = Vertex { bsdf: &vertex.bsdf.diffuse_part(), ..*vertex };
         let wanted = LookUp { map: MapName::Afterglow, direct: None, other: Some(LightPart::Global) };
-        self.look_up(&wanted, &smooth, self.afterglow_bandwidth, tools).1
+        let afterglow = self.look_up(&wanted, &smooth, self.afterglow_bandwidth, tools).1;
+        // Light from media comes from everywhere, and is smooth on rough surfaces; glossy lobes see it by their rays.
+        let wanted = LookUp { map: MapName::Haze, ..wanted };
+        afterglow + self.look_up(&wanted, &smooth, self.haze_bandwidth, tools).1
     }
 
     /// One gather ray: on over specular surfaces to the first that is not, whose direct and global light
@@ -97,27 +101,42 @@ impl PhotonMapper<'_> {
         tools: &mut Tools<'_, P>,
     ) -> Rgb {
         let mut found = Rgb::BLACK;
-        let Some((mut ray, mut throughput)) = start_gather(vertex, guide, sampler) else {
+        let Some((direction, mut throughput)) = start_gather(vertex, guide, sampler) else {
             return found;
         };
+        let before = Way { ray: Ray::new(vertex.point().position, -vertex.wo), inside: vertex.inside };
+        let mut way = before.pass(self.world, vertex.hit, direction);
         // The share that a glossy lobe has in the last surface's reflection: through it caustics are seen
         // as they are, and the rest of that surface has them by its afterglow.
-        let mut sharp = glossy_share(vertex.bsdf, vertex.wo, ray.direction);
+        let mut sharp = glossy_share(vertex.bsdf, vertex.wo, direction);
         let mut depth = vertex.depth + 1;
         let (mut distance, mut near) = (0.0, 0);
         // A surface at the last segment can still reflect nothing: light needs one more.
         while self.fits(depth + 1) {
-            let Some(hit) = self.world.intersect(&ray) else { break };
+            let hit = self.world.intersect(&way.ray);
+            if let Some(matter) = self.world.matter(way.inside) {
+                let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth };
+                if sharp.is_black() {
+                    throughput *= matter.transmittance(&way.ray, end, sampler);
+                } else {
+                    tools.probe.carry(throughput * sharp);
+                    let (seen, through) = self.through_medium(&segment, true, sampler, tools);
+                    found += throughput * sharp * seen;
+                    throughput *= through;
+                }
+            }
+            let Some(hit) = hit else { break };
             distance += hit.t;
-            let wo = -ray.direction;
+            let wo = -way.ray.direction;
             let bsdf = self.world.bsdf(&hit, wo);
             if bsdf.is_null() {
-                ray = leave(&hit.point, ray.direction);
+                way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
             }
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
             if !bsdf.is_dirac() {
-                let there = Vertex { point: &hit.point, bsdf: &bsdf, wo, depth };
+                let there = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside };
                 let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
                 found += throughput * self.light_at(&there, far, sharp, throughput, sampler, tools);
                 if far {
@@ -126,15 +145,15 @@ impl PhotonMapper<'_> {
                 near += 1;
                 distance = 0.0;
             }
-            let Some((next, carried)) = scatter(&bsdf, &hit.point, wo, throughput, depth - 1, sampler) else {
+            let Some((next, carried)) = scatter(&bsdf, wo, throughput, depth - 1, sampler) else {
                 break;
             };
             if !bsdf.is_dirac() {
                 // Where nothing is gathered there is no afterglow, and the ray brings all caustics.
                 let gathers = self.gather_rays.is_some();
-                sharp = if gathers { glossy_share(&bsdf, wo, next.direction) } else { Rgb::WHITE };
+                sharp = if gathers { glossy_share(&bsdf, wo, next) } else { Rgb::WHITE };
             }
-            (ray, throughput) = (next, carried);
+            (way, throughput) = (way.pass(self.world, &hit, next), carried);
             depth += 1;
         }
         found
@@ -147,8 +166,8 @@ fn start_gather(
     vertex: &Vertex<'_>,
     guide: Option<&Facing<'_>>,
     sampler: &mut Sampler,
-) -> Option<(Ray, Rgb)> {
-    let Vertex { point, bsdf, wo, .. } = *vertex;
+) -> Option<(Vec3, Rgb)> {
+    let Vertex { bsdf, wo, .. } = *vertex;
     let (u, u_lobe, u_technique) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
     let guide_share = match guide {
         None => 0.0,
@@ -164,7 +183,7 @@ fn start_gather(
     };
     let pdf = guide_share * pdf_of_guide + (1.0 - guide_share) * bsdf.pdf(wo, wi);
     let weight = bsdf.eval(wo, wi) * (bsdf.cosine(wi) / pdf);
-    (pdf > 0.0 && !weight.is_black()).then(|| (leave(point, wi), weight))
+    (pdf > 0.0 && !weight.is_black()).then_some((wi, weight))
 }
 
 /// The share of a BSDF that is in its glossy lobe.

@@ -1,0 +1,200 @@
+//! What a medium sends back along a ray: light scattered once, found by rays to the lights, and all other, found by
+//! photons along the way.
+
+use super::{DirectSource, PhotonMapper, Tools};
+use crate::color::Rgb;
+use crate::integrator::photon_mapper::VolumeIndex;
+use crate::integrator::photon_mapper::config::VolumeEstimate;
+use crate::integrator::{LightPart, Probe};
+use crate::math::{Ray, Vec3, real};
+use crate::medium::{Matter, Profile};
+use crate::sampling::Sampler;
+use crate::transport::{DirectLights, Fog, Lit, Partner, Scatterer, one_light};
+use crate::world::Surroundings;
+
+/// The part of a ray that lies in one medium.
+pub(super) struct Segment<'a> {
+    pub ray: &'a Ray,
+    /// Where it ends, which may be infinitely far.
+    pub end: f32,
+    pub matter: &'a Matter,
+    pub inside: Surroundings,
+    /// Segments from the lens to its end.
+    pub depth: u32,
+}
+
+impl Segment<'_> {
+    /// The number of the medium as photons have it.
+    pub fn medium(&self) -> u16 {
+        self.inside.medium().map_or(u16::MAX, |medium| medium.index() as u16)
+    }
+
+    /// σ_s at a point of it, in 1/m.
+    fn scattering(&self, position: Vec3) -> Rgb {
+        self.matter.sigma_t(position) * self.matter.albedo(position)
+    }
+}
+
+impl PhotonMapper<'_> {
+    /// The radiance that a medium adds to a ray from its way, and the share of what lies behind that comes
+    /// through. Maps are read only if `reads`, and count for the samples that do not.
+    pub(super) fn through_medium<P: Probe>(
+        &self,
+        segment: &Segment<'_>,
+        reads: bool,
+        sampler: &mut Sampler,
+        tools: &mut Tools<'_, P>,
+    ) -> (Rgb, Rgb) {
+        let &Segment { ray, end, matter, .. } = segment;
+        let profile = matter.profile(ray, end);
+        let through = profile.transmittance(end);
+        if !self.config.shows_media() {
+            return (Rgb::BLACK, through);
+        }
+        if self.config.fog == Fog::Ambient {
+            return (self.ambient(segment, through), through);
+        }
+        let mut seen = Rgb::BLACK;
+        if matter.emits() {
+            seen += matter.emitted(ray, end, sampler);
+        }
+        if self.config.single_scatter == DirectSource::Rays && self.fits(segment.depth + 1) {
+            seen += self.single_scatter(segment, &profile, sampler);
+        }
+        if reads {
+            let found: Rgb = self
+                .maps
+                .volumes
+                .iter()
+                .map(|map| self.scattered(map, segment, &profile, sampler, tools))
+                .sum();
+            seen += found * self.stride as f32;
+        }
+        tools.probe.light(LightPart::Medium, seen);
+        (seen, through)
+    }
+
+    /// σ_s L_i (1 − e^(−σ_t d)) / σ_t, the report's first method, with L_i as the medium says.
+    fn ambient(&self, segment: &Segment<'_>, through: Rgb) -> Rgb {
+        let albedo = segment.matter.albedo(segment.ray.origin);
+        segment.matter.ambient() * albedo * (Rgb::WHITE - through)
+    }
+
+    /// Light scattered once: lights are asked at a point that is sampled by equiangular density for one light
+    /// (Kulla and Fajardo 2012, doi 10.1111/j.1467-8659.2012.03148.x) or by transmittance, as a mixture.
+    fn single_scatter(&self, segment: &Segment<'_>, profile: &Profile, sampler: &mut Sampler) -> Rgb {
+        let Some(table) = self.world.lights_for_direct() else { return Rgb::BLACK };
+        match self.config.direct_lights {
+            DirectLights::One => {
+                let (light, probability, _) = table.sample(sampler.next_1d());
+                self.scattered_once(segment, profile, light, probability, sampler)
+            }
+            DirectLights::All => (0..self.world.light_count())
+                .map(|light| self.scattered_once(segment, profile, light, 1.0, sampler))
+                .sum(),
+        }
+    }
+
+    fn scattered_once(
+        &self,
+        segment: &Segment<'_>,
+        profile: &Profile,
+        light: usize,
+        probability: f32,
+        sampler: &mut Sampler,
+    ) -> Rgb {
+        let (u, u_technique) = (sampler.next_1d(), sampler.next_1d());
+        let around = self.world.emitters()[light].middle().map(|c| Equiangular::new(segment, c));
+        let by_angle = if around.is_some() { 0.5 } else { 0.0 };
+        let t = match &around {
+            Some(around) if u_technique < by_angle => around.sample(u),
+            _ => profile.sample(u, 0.0, segment.end),
+        };
+        let pdf = by_angle * around.map_or(0.0, |around| around.pdf(t))
+            + (1.0 - by_angle) * profile.pdf(t, 0.0, segment.end);
+        let position = segment.ray.at(t);
+        let weight = profile.transmittance(t) * segment.scattering(position) / pdf;
+        if pdf <= 0.0 || weight.is_black() || !weight.is_finite() {
+            return Rgb::BLACK;
+        }
+        let scatterer = Scatterer::Medium { position, phase: segment.matter.phase() };
+        let lit = Lit { scatterer, wo: -segment.ray.direction, inside: segment.inside };
+        weight * one_light(self.world, &lit, light, probability, Partner::None, sampler)
+    }
+
+    /// The light that a map holds along a ray.
+    fn scattered<P: Probe>(
+        &self,
+        map: &VolumeIndex,
+        segment: &Segment<'_>,
+        profile: &Profile,
+        sampler: &mut Sampler,
+        tools: &mut Tools<'_, P>,
+    ) -> Rgb {
+        let (wo, phase) = (-segment.ray.direction, segment.matter.phase());
+        let kernel = self.config.kernel;
+        let mut sum = Rgb::BLACK;
+        match map {
+            VolumeIndex::Points(map) if map.is_empty() => {}
+            VolumeIndex::Points(map) => match self.config.volume_estimate {
+                VolumeEstimate::Beam => {
+                    map.along(segment.ray, segment.end, segment.medium(), kernel, |t, photon, weight| {
+                        if self.fits(segment.depth + u32::from(photon.depth)) {
+                            let scattered = photon.power * (phase.eval(wo, photon.wi) * weight);
+                            sum += profile.transmittance(t) * scattered;
+                        }
+                    });
+                }
+                VolumeEstimate::March => return self.march(map, segment, profile, sampler, tools),
+                VolumeEstimate::MarchReport => return self.march_report(map, segment, tools),
+            },
+            VolumeIndex::Beams(map) => {
+                map.along(segment.ray, segment.end, segment.medium(), kernel, |t, s, beam, weight| {
+                    if self.fits(segment.depth + u32::from(beam.depth)) {
+                        let reached = if beam.long { segment.matter.attenuation(s) } else { Rgb::WHITE };
+                        let scattered = segment.scattering(segment.ray.at(t)) * beam.power * reached;
+                        sum +=
+                            profile.transmittance(t) * scattered * (phase.eval(wo, -beam.direction) * weight);
+                    }
+                });
+            }
+        }
+        sum
+    }
+}
+
+/// Distances along a ray by equal angles, seen from a point.
+struct Equiangular {
+    /// Where the ray is nearest to the point.
+    nearest: f32,
+    distance: f32,
+    angles: [f32; 2],
+}
+
+impl Equiangular {
+    fn new(segment: &Segment<'_>, point: Vec3) -> Self {
+        let ray = segment.ray;
+        let to_point = point - ray.origin;
+        let nearest = to_point.dot(ray.direction);
+        // A point on the ray is taken for one beside it, by what rounding leaves of its place.
+        let distance = (to_point - ray.direction * nearest).length().max(1e-4 * to_point.length());
+        let angle = |t: f32| real::atan2(t - nearest, distance);
+        let angles = [
+            angle(0.0),
+            if segment.end.is_finite() { angle(segment.end) } else { 0.5 * std::f32::consts::PI },
+        ];
+        Self { nearest, distance, angles }
+    }
+
+    fn sample(&self, u: f32) -> f32 {
+        let [a, b] = self.angles;
+        (self.nearest + self.distance * real::tan(a + (b - a) * u)).max(0.0)
+    }
+
+    /// Density per length.
+    fn pdf(&self, t: f32) -> f32 {
+        let [a, b] = self.angles;
+        let from_nearest = t - self.nearest;
+        self.distance / ((b - a) * (self.distance * self.distance + from_nearest * from_nearest))
+    }
+}

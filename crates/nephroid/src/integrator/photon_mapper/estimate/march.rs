@@ -1,0 +1,88 @@
+//! Ray marching: photons near points of a ray.
+
+use super::in_scatter::Segment;
+use super::{PhotonMapper, Tools};
+use crate::color::Rgb;
+use crate::integrator::Probe;
+use crate::math::{Vec3, real};
+use crate::medium::Profile;
+use crate::photon_map::{Bandwidth, VolumeMap};
+use crate::sampling::Sampler;
+
+/// Of how many parts of the scene a step of the report's march is one.
+const REPORT_STEPS: f32 = 128.0;
+
+impl PhotonMapper<'_> {
+    /// In steps as long as the radius of the last estimate, over which what it finds can change. In each a
+    /// point is sampled by transmittance, so that the steps' lengths make no error.
+    pub(super) fn march<P: Probe>(
+        &self,
+        map: &VolumeMap,
+        segment: &Segment<'_>,
+        profile: &Profile,
+        sampler: &mut Sampler,
+        tools: &mut Tools<'_, P>,
+    ) -> Rgb {
+        let end = segment.end.min(segment.matter.reach(segment.ray));
+        let mut sum = Rgb::BLACK;
+        let (mut from, mut radius) = (0.0, map.default_max_radius(self.config.volume_neighbours()));
+        while from < end {
+            // The last step takes what would be left of another.
+            let to = if from + 1.5 * radius < end { from + radius } else { end };
+            let t = profile.sample(sampler.next_1d(), from, to);
+            let pdf = profile.pdf(t, from, to);
+            let (source, found) = self.source(map, segment, segment.ray.at(t), tools);
+            if pdf > 0.0 {
+                sum += profile.transmittance(t) * source / pdf;
+            }
+            (from, radius) = (to, found);
+        }
+        sum
+    }
+
+    /// L(x_k) = σ_s L_i Δx + e^(−σ_t Δx) L(x_(k−1)), from the far end (item 60 of the report).
+    pub(super) fn march_report<P: Probe>(
+        &self,
+        map: &VolumeMap,
+        segment: &Segment<'_>,
+        tools: &mut Tools<'_, P>,
+    ) -> Rgb {
+        let end = segment.end.min(segment.matter.reach(segment.ray));
+        let step = self.config.march_step.unwrap_or(2.0 * self.world.radius() / REPORT_STEPS);
+        let steps = (end / step).ceil().max(1.0);
+        (0..steps as u32).rev().fold(Rgb::BLACK, |behind, k| {
+            let near = k as f32 * step;
+            let length = step.min(end - near);
+            let position = segment.ray.at(near);
+            let extinction = segment.matter.sigma_t(position);
+            let left = extinction.map(|sigma| real::exp(-sigma * length));
+            self.source(map, segment, position, tools).0 * length + left * behind
+        })
+    }
+
+    /// The radiance scattered per length at a point towards the origin of the ray, in W/(m³·sr), and the radius in which
+    /// photons were found.
+    fn source<P: Probe>(
+        &self,
+        map: &VolumeMap,
+        segment: &Segment<'_>,
+        position: Vec3,
+        tools: &mut Tools<'_, P>,
+    ) -> (Rgb, f32) {
+        let (wo, phase, k) =
+            (-segment.ray.direction, segment.matter.phase(), self.config.volume_neighbours());
+        let bandwidth = Bandwidth::Nearest { k, max_radius: map.default_max_radius(k) };
+        let most = self.config.max_depth.map(|max| max.saturating_sub(segment.depth).min(65_535) as u16);
+        let mut sum = Rgb::BLACK;
+        let gathered = map.at(
+            position,
+            segment.medium(),
+            most,
+            bandwidth,
+            self.config.kernel,
+            tools.neighbors,
+            |photon, weight| sum += photon.power * (phase.eval(wo, photon.wi) * weight),
+        );
+        (sum, gathered.radius)
+    }
+}

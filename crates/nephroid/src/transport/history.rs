@@ -1,0 +1,118 @@
+//! What a photon is, by what its path has met.
+
+/// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
+/// bounce, D any other, V a collision in a medium; null surfaces count as nothing. The last letter is where the
+/// photon lies: D on a surface, V in a medium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhotonKind {
+    /// L D and L V: belongs to next event estimation, unless direct light comes from the map.
+    Direct,
+    /// L S+ D and L S+ V: the caustic maps'.
+    Caustic,
+    /// L S+ D S* D: a caustic's light after one more bounce. The global map's, and known apart, since
+    /// gather rays do not bring it.
+    Afterglow,
+    /// V S* D: light from a medium. The global map's, and known apart for the same reason.
+    Haze,
+    /// All the rest: the global map's, or that of the volume.
+    Global,
+}
+
+/// What a path has met so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct History {
+    specular: u32,
+    other: u32,
+    /// Whether the first surface that was not specular was lit by one that was.
+    from_caustic: bool,
+    /// Whether the last of the others was a collision.
+    from_medium: bool,
+}
+
+impl History {
+    pub fn bounces(&self) -> u32 {
+        self.specular + self.other
+    }
+
+    /// What a photon is that lands now on a surface that is not specular.
+    pub fn kind(&self) -> PhotonKind {
+        match (self.specular, self.other) {
+            (0, 0) => PhotonKind::Direct,
+            (_, 0) => PhotonKind::Caustic,
+            _ if self.from_medium => PhotonKind::Haze,
+            (_, 1) if self.from_caustic => PhotonKind::Afterglow,
+            _ => PhotonKind::Global,
+        }
+    }
+
+    /// What a photon is that collides now.
+    pub fn kind_in_medium(&self) -> PhotonKind {
+        match (self.specular, self.other) {
+            (0, 0) => PhotonKind::Direct,
+            (_, 0) => PhotonKind::Caustic,
+            _ => PhotonKind::Global,
+        }
+    }
+
+    pub fn bounce(&mut self, dirac: bool) {
+        if dirac {
+            self.specular += 1;
+        } else {
+            self.from_caustic |= self.other == 0 && self.specular > 0;
+            self.from_medium = false;
+            self.other += 1;
+        }
+    }
+
+    pub fn collide(&mut self) {
+        self.from_medium = true;
+        self.other += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history(path: &str) -> History {
+        let mut history = History::default();
+        for letter in path.chars() {
+            match letter {
+                'V' => history.collide(),
+                _ => history.bounce(letter == 'S'),
+            }
+        }
+        history
+    }
+
+    #[test]
+    fn a_path_decides_the_kind_of_its_photons() {
+        // What the path has met before the D where the photon lies.
+        let kind = |path| history(path).kind();
+        assert_eq!(kind(""), PhotonKind::Direct);
+        for path in ["S", "SS", "SSS"] {
+            assert_eq!(kind(path), PhotonKind::Caustic, "{path}");
+        }
+        for path in ["SD", "SSD", "SDS", "SDSS"] {
+            assert_eq!(kind(path), PhotonKind::Afterglow, "{path}");
+        }
+        for path in ["D", "DS", "DD", "SDD", "DSD", "SDSD", "VD", "VDS", "SVD", "DVSD"] {
+            assert_eq!(kind(path), PhotonKind::Global, "{path}");
+        }
+        for path in ["V", "VS", "SV", "DV", "SDV", "DVSS", "VV"] {
+            assert_eq!(kind(path), PhotonKind::Haze, "{path}");
+        }
+    }
+
+    #[test]
+    fn and_in_media() {
+        let kind = |path| history(path).kind_in_medium();
+        assert_eq!(kind(""), PhotonKind::Direct);
+        for path in ["S", "SS"] {
+            assert_eq!(kind(path), PhotonKind::Caustic, "{path}");
+        }
+        for path in ["D", "V", "VS", "SV", "SD", "DS"] {
+            assert_eq!(kind(path), PhotonKind::Global, "{path}");
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! How many photon paths to emit for each map: found by trial paths.
+
+use rayon::prelude::*;
+
+use super::emit::CHUNK;
+use super::history::PhotonKind;
+use super::ledger::Ledger;
+use super::walk::{Event, Fog, LightChoice, MapKind, Next, WalkSettings, walk};
+use crate::sampling::{Key, Sampler, Sequence, Stream};
+use crate::world::World;
+
+/// The pilot goes on until it has counted so many photons for each map, which tells their number per
+/// path to 3 %…
+const PILOT_PHOTONS: u64 = 1024;
+/// … or has traced so many paths. If these bring nothing, no more are emitted: any number is unbiased.
+const PILOT_PATHS: u64 = 1 << 18;
+
+/// How many photons are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonTargets {
+    /// Photons in the global map.
+    pub global: u64,
+    /// Photons in the caustic map.
+    pub caustic: u64,
+    /// Photons in each of the maps of light in media.
+    pub volume: u64,
+    /// What these hold.
+    pub volume_kind: VolumeKind,
+    /// Paths to emit for each map, whatever they store; overrides the targets.
+    pub emit: Option<u64>,
+    /// Paths emitted are at most this multiple of the target.
+    pub emit_max: u64,
+    /// Whether light that comes straight from a light belongs in the global map.
+    pub store_direct: bool,
+    /// Whether light that comes straight from a light belongs in the map of the volume.
+    pub store_single_scatter: bool,
+}
+
+/// What maps of light in media hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VolumeKind {
+    /// Photons where they collided (Jensen and Christensen 1998).
+    #[default]
+    Points,
+    /// The ways that photons went (Jarosz et al. 2011).
+    Beams,
+}
+
+/// How many paths a render emits for each map in each iteration: fixed before the first is traced,
+/// so that dividing by them is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotonPlan {
+    /// For the global map.
+    pub global: MapPlan,
+    /// For the caustic map.
+    pub caustic: MapPlan,
+    /// For the map of light in media.
+    pub volume: MapPlan,
+    /// For that of light in media that comes from specular surfaces.
+    pub volume_caustic: MapPlan,
+}
+
+/// The paths for one map.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapPlan {
+    /// Paths to emit.
+    pub paths: u64,
+    /// Photons the pilot expects them to store.
+    pub expected_photons: u64,
+    /// Whether the limit on emission made the map thinner than asked for.
+    pub limited: bool,
+}
+
+impl PhotonPlan {
+    /// Traces trial paths, with a stream of their own, and plans for the targets.
+    pub(crate) fn by_pilot(
+        world: &World,
+        settings: &WalkSettings,
+        targets: &PhotonTargets,
+        seed: u64,
+    ) -> Self {
+        if world.lights_by_power().is_none() {
+            return Self::default();
+        }
+        let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
+        let specular = !too_short && world.has_dirac_surfaces();
+        let volume = world.has_media() && settings.fog == Fog::Volume;
+        let plan = |map| {
+            let (wanted, possible) = match map {
+                MapKind::Global => (targets.global, !too_short || targets.store_direct),
+                MapKind::Caustic => (targets.caustic, specular),
+                MapKind::Volume => (targets.volume, volume && (!too_short || targets.store_single_scatter)),
+                MapKind::VolumeCaustic => (targets.volume, volume && specular),
+            };
+            if wanted == 0 || !possible {
+                return MapPlan::default();
+            }
+            if let Some(paths) = targets.emit {
+                return MapPlan { paths: round_up(paths, world, settings), ..MapPlan::default() };
+            }
+            let (paths, counted) = count(world, settings, map, targets, seed);
+            let most = wanted.saturating_mul(targets.emit_max);
+            let per_path = counted as f64 / paths as f64;
+            let needed = if counted == 0 { paths } else { (wanted as f64 / per_path).ceil() as u64 };
+            let emitted = round_up(needed.min(most), world, settings);
+            MapPlan {
+                paths: emitted,
+                expected_photons: (emitted as f64 * per_path) as u64,
+                limited: needed > most || counted == 0,
+            }
+        };
+        Self {
+            global: plan(MapKind::Global),
+            caustic: plan(MapKind::Caustic),
+            volume: plan(MapKind::Volume),
+            volume_caustic: plan(MapKind::VolumeCaustic),
+        }
+    }
+}
+
+/// Gives every light the same number of paths where that was asked for.
+fn round_up(paths: u64, world: &World, settings: &WalkSettings) -> u64 {
+    match settings.light_choice {
+        LightChoice::Power => paths,
+        LightChoice::Equal => paths.next_multiple_of(world.light_count().max(1) as u64),
+    }
+}
+
+/// Trial paths for a map: how many were traced, and how many photons they would have stored.
+fn count(
+    world: &World,
+    settings: &WalkSettings,
+    map: MapKind,
+    targets: &PhotonTargets,
+    seed: u64,
+) -> (u64, u64) {
+    let key = Key::new(seed, 0, Stream::Pilot).with(map as u64);
+    let (mut paths, mut counted) = (0, 0);
+    let mut batch = 4 * CHUNK;
+    loop {
+        let trial = |chunk| {
+            let mut books = Ledger::new(world.light_count());
+            let mut stored = 0;
+            for path in chunk * CHUNK..(chunk + 1) * CHUNK {
+                let mut sampler = Sampler::new(Sequence::Independent, key, path);
+                walk(world, settings, map, path, &mut sampler, &mut books.lights, |event, kind| {
+                    let (counts, next) = tried(map, targets, &event, kind);
+                    stored += u64::from(counts);
+                    next
+                });
+            }
+            stored
+        };
+        let chunks = paths / CHUNK..(paths + batch) / CHUNK;
+        counted += chunks.into_par_iter().map(trial).sum::<u64>();
+        paths += batch;
+        if counted >= PILOT_PHOTONS || paths >= PILOT_PATHS {
+            return (paths, counted);
+        }
+        batch = paths;
+    }
+}
+
+/// Whether a trial path's event would be stored, and whether another may be.
+fn tried(map: MapKind, targets: &PhotonTargets, event: &Event, kind: PhotonKind) -> (bool, Next) {
+    match map {
+        MapKind::Global => {
+            let counts = match kind {
+                PhotonKind::Direct => targets.store_direct,
+                kind => kind != PhotonKind::Caustic,
+            };
+            (counts && matches!(event, Event::Surface(_)), Next::Continue)
+        }
+        MapKind::Caustic => match event {
+            Event::Surface(_) => (kind == PhotonKind::Caustic, Next::Stop),
+            Event::Collision(_) => (false, Next::Stop),
+            Event::Way(_) => (false, Next::Continue),
+        },
+        MapKind::Volume | MapKind::VolumeCaustic => stored_in_volume(map, targets, event, kind),
+    }
+}
+
+/// Whether an event belongs in a map of light in media, and whether another of its path may.
+pub(super) fn stored_in_volume(
+    map: MapKind,
+    targets: &PhotonTargets,
+    event: &Event,
+    kind: PhotonKind,
+) -> (bool, Next) {
+    let fits = match event {
+        Event::Surface(_) => false,
+        Event::Collision(_) => targets.volume_kind == VolumeKind::Points,
+        Event::Way(_) => targets.volume_kind == VolumeKind::Beams,
+    };
+    if map == MapKind::Volume {
+        let belongs = match kind {
+            PhotonKind::Direct => targets.store_single_scatter,
+            kind => kind != PhotonKind::Caustic,
+        };
+        return (fits && belongs, Next::Continue);
+    }
+    match (event, kind) {
+        // Whatever follows a surface that is not specular, or a collision, is no caustic.
+        (Event::Surface(_), _) => (false, Next::Stop),
+        (Event::Collision(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
+        (Event::Way(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Continue),
+    }
+}

@@ -1,0 +1,161 @@
+//! What fills the space where a path is: media change where surfaces that name some are crossed.
+
+use super::{Hit, RayHit, World, leave};
+use crate::color::Rgb;
+use crate::handle::Handle;
+use crate::light::Source;
+use crate::math::{Ray, Vec3, offset_origin};
+use crate::medium::{Boundary, Matter, Medium};
+use crate::sampling::Sampler;
+use crate::shape::SurfacePoint;
+
+/// What fills the space that a path is in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Surroundings {
+    medium: Option<Handle<Medium>>,
+    /// Whether the path takes no notice of media.
+    blind: bool,
+}
+
+impl Surroundings {
+    /// Those of a path that takes no notice of media.
+    pub const BLIND: Self = Self { medium: None, blind: true };
+
+    /// Inside a medium or, with `None`, outside of all.
+    pub fn of(medium: Option<Handle<Medium>>) -> Self {
+        Self { medium, blind: false }
+    }
+
+    /// The medium, if there is one.
+    pub fn medium(self) -> Option<Handle<Medium>> {
+        self.medium
+    }
+}
+
+/// Where a shadow ray starts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Vantage<'a> {
+    /// On a surface.
+    Surface(&'a SurfacePoint),
+    /// Between surfaces.
+    Space(Vec3),
+}
+
+impl Vantage<'_> {
+    pub fn position(&self) -> Vec3 {
+        match self {
+            Self::Surface(point) => point.position,
+            Self::Space(position) => *position,
+        }
+    }
+
+    /// The ray to where light comes from in direction `wi`, short of it. Its direction has the length of the way
+    /// where that is finite.
+    pub fn shadow_ray(&self, wi: Vec3, source: &Source) -> Ray {
+        let origin = match self {
+            Self::Surface(p) => offset_origin(p.position, p.error, p.ng, wi),
+            Self::Space(position) => *position,
+        };
+        match source {
+            Source::Infinity => Ray::new(origin, wi),
+            Source::Point(p) => Ray { origin, direction: *p - origin, t_max: SHADOW_END },
+            Source::Surface(s) => {
+                let end = offset_origin(s.position, s.error, s.ng, -wi);
+                Ray { origin, direction: end - origin, t_max: SHADOW_END }
+            }
+        }
+    }
+}
+
+/// The shortening of shadow rays that keeps them off the light they end at; relative, as both ends
+/// have been moved off their surfaces already.
+const SHADOW_END: f32 = 1.0 - 1e-5;
+
+impl World {
+    /// Whether there is any medium that a path may be in.
+    pub fn has_media(&self) -> bool {
+        !self.matters.is_empty()
+    }
+
+    /// What is inside, if it is a medium.
+    #[inline]
+    pub(crate) fn matter(&self, inside: Surroundings) -> Option<&Matter> {
+        inside.medium.map(|medium| &self.matters[medium.index()])
+    }
+
+    /// What the camera stands in.
+    pub fn camera_surroundings(&self) -> Surroundings {
+        self.camera_surroundings
+    }
+
+    /// What the light of a lamp starts in.
+    pub fn light_surroundings(&self, light: usize) -> Surroundings {
+        self.light_surroundings.get(light).copied().unwrap_or_default()
+    }
+
+    /// What a path is in that leaves a surface along `direction`, having come along `before`: what it was
+    /// in, but where it crossed a surface that names media.
+    #[inline]
+    pub(crate) fn cross(
+        &self,
+        inside: Surroundings,
+        hit: &Hit,
+        before: Vec3,
+        direction: Vec3,
+    ) -> Surroundings {
+        let Some(boundary) = &self.surfaces[hit.shape as usize].boundary else { return inside };
+        let ahead = direction.dot(hit.point.ng);
+        if inside.blind || before.dot(hit.point.ng) * ahead <= 0.0 {
+            return inside;
+        }
+        Surroundings::of(beyond(boundary, ahead))
+    }
+
+    /// The share of light from `source` in direction `wi` that reaches a point, right in the mean. `inside` is what
+    /// the shadow ray starts in.
+    pub(crate) fn light_through(
+        &self,
+        from: Vantage<'_>,
+        inside: Surroundings,
+        wi: Vec3,
+        source: &Source,
+        sampler: &mut Sampler,
+    ) -> Rgb {
+        let ray = from.shadow_ray(wi, source);
+        if self.matters.is_empty() || inside.blind {
+            return if self.occluded(&ray) { Rgb::BLACK } else { Rgb::WHITE };
+        }
+        let length = ray.direction.length();
+        let ray = Ray { direction: ray.direction / length, t_max: ray.t_max * length, ..ray };
+        self.transmittance(ray, inside, sampler)
+    }
+
+    /// The share of light that comes through to the end of a ray with a direction of unit length: null surfaces
+    /// are passed, all others stop it.
+    fn transmittance(&self, mut ray: Ray, mut inside: Surroundings, sampler: &mut Sampler) -> Rgb {
+        let mut through = Rgb::WHITE;
+        loop {
+            let hit = self.nearest(&ray);
+            if hit.is_some_and(|hit| !self.surfaces[hit.shape as usize].invisible) {
+                return Rgb::BLACK;
+            }
+            if let Some(matter) = self.matter(inside) {
+                let end = hit.map_or(ray.t_max, |hit| hit.t);
+                through *= matter.transmittance(&ray, end, sampler);
+            }
+            let Some(hit) = hit else { return through };
+            let (point, direction) = (self.surface(&ray, &hit), ray.direction);
+            inside = self.cross(inside, &met(hit, point), direction, direction);
+            ray = Ray { t_max: ray.t_max - hit.t, ..leave(&point, direction) };
+        }
+    }
+}
+
+fn met(hit: RayHit, point: SurfacePoint) -> Hit {
+    Hit { t: hit.t, point, shape: hit.shape }
+}
+
+/// The medium on the side of a surface to which a direction with this cosine to its normal leads.
+pub(super) fn beyond(boundary: &Boundary, cos: f32) -> Option<Handle<Medium>> {
+    if cos > 0.0 { boundary.exterior } else { boundary.interior }
+}
