@@ -1,6 +1,8 @@
 //! Photons on surfaces: their map, the search for the nearest ones, kernels, and the geometry of the
-//! radiance estimate. Knows neither materials nor how photons come about.
+//! radiance estimate. Beams of photons in media, and those that pass a ray. Knows neither materials nor media
+//! nor how photons come about.
 
+mod beams;
 mod block;
 mod brute_force;
 mod estimate;
@@ -21,6 +23,7 @@ mod index_tests;
 #[cfg(test)]
 mod testing;
 
+pub use beams::{Beam, BeamMap, BeamWidth, Beams};
 pub use brute_force::BruteForce;
 pub use estimate::{Bandwidth, Gathered, Query, gather};
 pub use grid_tree::GridTree;
