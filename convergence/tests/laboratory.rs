@@ -111,6 +111,7 @@ fn told(sample: &InspectedSample) -> Components {
             LightPart::Direct => "direct",
             LightPart::Global => "global",
             LightPart::Caustic => "caustic",
+            LightPart::Medium => "medium",
         };
         *parts.entry(name).or_insert(Rgb::BLACK) += radiance;
     }
@@ -120,6 +121,7 @@ fn told(sample: &InspectedSample) -> Components {
         direct: part("direct"),
         global: part("global"),
         caustic: part("caustic"),
+        medium: part("medium"),
     }
 }
 

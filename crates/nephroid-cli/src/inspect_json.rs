@@ -90,6 +90,7 @@ fn light(light: &Components) -> Value {
         "direct": rgb(light.direct),
         "global": rgb(light.global),
         "caustic": rgb(light.caustic),
+        "medium": rgb(light.medium),
     })
 }
 
@@ -104,5 +105,6 @@ pub fn part(part: LightPart) -> &'static str {
         LightPart::Direct => "direct",
         LightPart::Global => "global",
         LightPart::Caustic => "caustic",
+        LightPart::Medium => "medium",
     }
 }

@@ -50,7 +50,7 @@ pub fn text(inspected: &Inspected<'_>) -> String {
 }
 
 fn parts(out: &mut String, indent: &str, light: &Components) {
-    for name in [LightPart::Emitted, LightPart::Direct, LightPart::Global, LightPart::Caustic] {
+    for name in LightPart::ALL {
         let _ = writeln!(out, "{indent}{:<8}{}", part(name), rgb(light.part(name)));
     }
 }

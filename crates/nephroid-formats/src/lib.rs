@@ -6,3 +6,4 @@ pub mod mesh;
 pub mod mitsuba;
 pub mod photons;
 pub mod vfs;
+pub mod volume;

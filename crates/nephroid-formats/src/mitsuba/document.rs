@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::legacy::upgrade;
 use super::log::Log;
 use super::open::{MAX_BYTES, decode, find};
 use super::parameters::{Parameters, shortened};
@@ -28,6 +29,8 @@ pub(super) struct Element {
     pub(super) location: Location,
     pub(super) attributes: Vec<Attribute>,
     pub(super) children: Vec<Element>,
+    /// Whether its file is of a version before 2.
+    pub(super) is_legacy: bool,
 }
 
 /// An attribute of an element.
@@ -103,11 +106,13 @@ pub(super) fn load(
         includes: 0,
         bytes: 0,
         count: 0,
+        is_legacy: false,
     };
     let source = decode(&path.display().to_string(), bytes, None, log)?;
     let (mut elements, root) = loader.file(path, &source)?;
     for element in &mut elements {
         substitute(element, &loader.parameters, log);
+        upgrade(element, &mut loader.count);
     }
     let Loader { folders, parameters, mut aliases, .. } = loader;
     for (existing, new, at) in &mut aliases {
@@ -142,6 +147,8 @@ struct Loader<'a> {
     includes: usize,
     bytes: usize,
     count: usize,
+    /// Whether the file at hand is of a version before 2.
+    is_legacy: bool,
 }
 
 impl Loader<'_> {
@@ -163,7 +170,7 @@ impl Loader<'_> {
         };
         let root = xml.root_element();
         let location = tag_location(source, &root);
-        self.check_root(source, &root, &location)?;
+        self.is_legacy = self.check_root(source, &root, &location)? < 2;
         let mut elements = Vec::new();
         for child in root.children() {
             if let Some(element) = self.element(source, child, 1) {
@@ -189,7 +196,8 @@ impl Loader<'_> {
         Some((out, location))
     }
 
-    fn check_root(&self, source: &Arc<Source>, root: &roxmltree::Node, at: &Location) -> Option<()> {
+    /// The version of the file before the first point.
+    fn check_root(&self, source: &Arc<Source>, root: &roxmltree::Node, at: &Location) -> Option<u32> {
         let tag = root.tag_name().name();
         if tag != "scene" {
             self.log.error(at, format!("expected <scene>, found <{tag}>"));
@@ -211,15 +219,10 @@ impl Loader<'_> {
         let at = Location::new(source, version.range_value());
         let major = version.value().split('.').next().and_then(|major| major.trim().parse::<u32>().ok());
         let message = match major {
-            Some(2 | 3) => return Some(()),
-            Some(0 | 1) => Diagnostic::error(
-                &at,
-                format!("scenes of Mitsuba {} cannot be read yet", shortened(version.value())),
-            )
-            .hint("versions 2 and 3 can; `mitsuba` writes a newer file when it loads an old one"),
+            Some(major @ (0 | 2 | 3)) => return Some(major),
             Some(_) => {
                 Diagnostic::error(&at, format!("unknown scene version \"{}\"", shortened(version.value())))
-                    .hint("versions 2 and 3 can be read")
+                    .hint("versions 0.4 to 0.6, 2 and 3 can be read")
             }
             None => {
                 Diagnostic::error(&at, format!("\"{}\" is not a scene version", shortened(version.value())))
@@ -264,6 +267,7 @@ impl Loader<'_> {
             location,
             attributes,
             children: Vec::new(),
+            is_legacy: self.is_legacy,
         };
         if self.absorb(&element) {
             return None;

@@ -38,13 +38,11 @@ impl<'t> Reader<'t> {
                 return;
             }
         };
-        for (property, _) in plugin.objects("medium") {
-            self.left_out(&property.location, "the medium around the emitter");
-        }
+        let medium = self.surroundings(&plugin);
         plugin.finish();
         if let Some(kind) = kind {
             self.origins.lights.push(plugin.location().clone());
-            self.lights.push(Light { name: plugin.name(), kind, medium: None });
+            self.lights.push(Light { name: plugin.name(), kind, medium });
         }
     }
 

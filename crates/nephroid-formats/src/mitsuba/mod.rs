@@ -1,17 +1,20 @@
-//! Scenes in the XML format of Mitsuba 2 and 3.
+//! Scenes in the XML format of Mitsuba 2 and 3, and the older one of 0.4 to 0.6.
 //!
 //! A text becomes a tree with its includes and parameters filled in, then each element is read
 //! into a [`Scene`]. All mistakes are reported at once, with file, line and column. Names that no
 //! version of the format has are errors; what the format has but cannot be rendered yet is replaced
 //! by its nearest kin with a warning, or refused where nothing is near (see [`Options::lenient`]).
 
+mod boundary;
 mod cie1931;
 mod document;
 mod emitter;
 mod group;
 mod integrator;
+mod legacy;
 mod log;
 mod material;
+mod medium;
 mod metals;
 mod names;
 mod number;
@@ -25,12 +28,12 @@ mod spectrum;
 mod texture;
 mod transform;
 mod value;
+mod volume;
 
 pub use integrator::{AovLayer, IntegratorParameter, IntegratorRequest, ParameterValue};
 
 use std::path::Path;
 
-use nephroid::medium::Media;
 use nephroid::scene::Scene;
 
 use self::document::{Document, Element};
@@ -87,6 +90,10 @@ pub struct Origins {
     pub images: Vec<Location>,
     /// Each of [`Scene::materials`]. A default material has the place of the first shape it is for.
     pub materials: Vec<Location>,
+    /// Each of [`Media::list`](nephroid::medium::Media::list).
+    pub media: Vec<Location>,
+    /// Each of [`Media::grids`](nephroid::medium::Media::grids): where its file is first named.
+    pub grids: Vec<Location>,
 }
 
 /// Reads a scene and all files it refers to.
@@ -148,6 +155,8 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
         textures: Vec::new(),
         images: Vec::new(),
         materials: Vec::new(),
+        media: Vec::new(),
+        grids: Vec::new(),
     };
     let mut reader = Reader::new(&ids, log, files, &document.folders, options.lenient, origins);
     let integrator = reader.integrator(&document.elements);
@@ -155,21 +164,11 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     reader.content(&document.elements);
     reader.warn_of_unused_groups();
     let sensor = sensor?;
-    let Reader { textures, materials, meshes, shapes, groups, instances, lights, mut origins, .. } = reader;
+    let Reader { textures, materials, meshes, shapes, groups, instances, lights, media, mut origins, .. } =
+        reader;
     origins.shapes.extend(reader.shapes_of_groups);
     let (camera, film) = (sensor.camera, sensor.film);
-    let scene = Scene {
-        camera,
-        film,
-        textures,
-        materials,
-        meshes,
-        shapes,
-        groups,
-        instances,
-        lights,
-        media: Media::default(),
-    };
+    let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights, media };
     let sample_count = sensor.sample_count;
     Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })
 }

@@ -20,39 +20,40 @@ pub(super) const OBJECT_TAGS: [&str; 12] = [
 pub(super) const PROPERTY_TAGS: [&str; 10] =
     ["boolean", "integer", "float", "string", "point", "vector", "rgb", "spectrum", "transform", "ref"];
 
-/// Properties of the plugins of Mitsuba 2 and 3, sorted.
+/// Properties of the plugins of Mitsuba, in the spelling of its versions 2 and 3, sorted.
 #[rustfmt::skip]
 pub(super) const PROPERTY_NAMES: &[&str] = &[
     "B", "C", "S", "accel", "albedo", "allow_thread_reordering", "allow_transmission", "alpha",
-    "alpha_sample", "alpha_u", "alpha_v", "anisotropic", "aovs", "aperture_radius", "azimuthal_roughness",
-    "banner", "base_color", "beam_width", "bitmap", "block_size", "bsdf", "bsdf_samples", "center",
-    "centers", "clearcoat", "clearcoat_gloss", "clearcoat_sampling_rate", "color", "color0", "color1",
-    "compensate", "complex_sun", "component_format", "crop_height", "crop_offset_x", "crop_offset_y",
-    "crop_width", "cutoff_angle", "data", "day", "delta", "diff_trans", "diffuse_reflectance",
-    "diffuse_reflectance_sampling_rate", "diffuse_transmittance_sampling_rate", "direction", "distribution",
-    "emitter", "emitter_samples", "end_day", "end_month", "end_year", "eta", "eumelanin", "exponent",
-    "ext_eta", "ext_ior", "extent", "exterior", "face_normals", "far_clip", "file_format", "filename",
-    "filter_type", "flatness", "flip_invalid_normals", "flip_normals", "flip_tex_coords", "focal_length",
-    "focus_distance", "format", "fov", "fov_axis", "g", "gamma", "grid", "guiding", "guiding_proj",
-    "guiding_rounds", "has_spectral_extinction", "height", "hide_emitters", "high_quality_edges", "hour",
-    "int_ior", "intensity", "interior", "irradiance", "jitter", "k", "latitude", "left_handed", "lobes",
-    "longitude", "longitudinal_roughness", "main_specular_sampling_rate", "material", "max_depth",
-    "max_value", "medium", "metallic", "minute", "mis_compensation", "month", "near_clip", "nested_bsdf",
-    "nonlinear", "normalmap", "normals", "opacity", "origin", "p0", "p1", "pheomelanin", "pixel_format",
-    "polarizing", "position", "principal_point_offset_x", "principal_point_offset_y", "project_seed",
-    "quaternions", "radiance", "radius", "raw", "reflectance", "roughness", "rr_depth", "sample_border",
-    "sample_count", "sample_emitters", "sample_visible", "samples_per_pass", "sampling_weight", "scale",
-    "scale_factor", "scale_tilt", "scales", "second", "seed", "shading_samples", "shape_index", "sheen",
-    "sheen_tint", "shutter_close", "shutter_open", "sigma_a", "sigma_s", "sigma_t",
-    "silhouette_sampling_weight", "size", "sky_scale", "spec_tint", "spec_trans", "specular",
-    "specular_reflectance", "specular_reflectance_sampling_rate", "specular_sampling_weight",
-    "specular_transmittance", "specular_transmittance_sampling_rate", "sppc", "sppi", "sppp", "srf",
-    "srgb_primitives", "start_day", "start_month", "start_year", "stddev", "strength", "sun_aperture",
-    "sun_direction", "sun_scale", "target", "temperature", "texture", "theta", "timeout", "timezone",
-    "to_uv", "to_world", "transmittance", "turbidity", "unbounded", "uoffset", "uscale", "use_grid_bbox",
-    "use_shadowing_function", "use_spectral_mis", "value", "values", "voffset", "volume", "vscale",
-    "wavelength", "wavelength_max", "wavelength_min", "wavelengths", "weight", "width", "window_end_time",
-    "window_start_time", "wrap_mode", "year",
+    "alpha_sample", "alpha_u", "alpha_v", "ambient", "anisotropic", "aovs", "aperture_radius",
+    "azimuthal_roughness", "banner", "base_color", "beam_width", "bitmap", "block_size", "bsdf",
+    "bsdf_samples", "center", "centers", "clearcoat", "clearcoat_gloss", "clearcoat_sampling_rate", "color",
+    "color0", "color1", "compensate", "complex_sun", "component_format", "crop_height", "crop_offset_x",
+    "crop_offset_y", "crop_width", "cutoff_angle", "data", "day", "delta", "diff_trans",
+    "diffuse_reflectance", "diffuse_reflectance_sampling_rate", "diffuse_transmittance_sampling_rate",
+    "direction", "distribution", "emission", "emitter", "emitter_samples", "end_day", "end_month",
+    "end_year", "eta", "eumelanin", "exponent", "ext_eta", "ext_ior", "extent", "exterior", "face_normals",
+    "far_clip", "file_format", "filename", "filter_type", "flatness", "flip_invalid_normals",
+    "flip_normals", "flip_tex_coords", "focal_length", "focus_distance", "format", "fov", "fov_axis", "g",
+    "gamma", "grid", "guiding", "guiding_proj", "guiding_rounds", "has_spectral_extinction", "height",
+    "hide_emitters", "high_quality_edges", "hour", "int_ior", "intensity", "interior", "irradiance",
+    "jitter", "k", "latitude", "left_handed", "lobes", "longitude", "longitudinal_roughness",
+    "main_specular_sampling_rate", "majorant_factor", "majorant_grid", "majorant_resolution_factor",
+    "material", "max_depth", "max_value", "medium", "metallic", "method", "minute", "mis_compensation",
+    "month", "near_clip", "nested_bsdf", "nonlinear", "normalmap", "normals", "opacity", "origin", "p0",
+    "p1", "pheomelanin", "pixel_format", "polarizing", "position", "principal_point_offset_x",
+    "principal_point_offset_y", "priority", "project_seed", "quaternions", "radiance", "radius", "raw",
+    "reflectance", "roughness", "rr_depth", "sample_border", "sample_count", "sample_emitters",
+    "sample_visible", "samples_per_pass", "sampling_weight", "scale", "scale_factor", "scale_tilt",
+    "scales", "second", "seed", "shading_samples", "shape_index", "sheen", "sheen_tint", "shutter_close",
+    "shutter_open", "sigma_a", "sigma_s", "sigma_t", "silhouette_sampling_weight", "size", "sky_scale",
+    "spec_tint", "spec_trans", "specular", "specular_reflectance", "specular_reflectance_sampling_rate",
+    "specular_sampling_weight", "specular_transmittance", "specular_transmittance_sampling_rate", "sppc",
+    "sppi", "sppp", "srf", "srgb_primitives", "start_day", "start_month", "start_year", "stddev",
+    "step_size", "strength", "sun_aperture", "sun_direction", "sun_scale", "target", "temperature",
+    "texture", "theta", "timeout", "timezone", "to_uv", "to_world", "transmittance", "turbidity",
+    "unbounded", "uoffset", "uscale", "use_grid_bbox", "use_shadowing_function", "use_spectral_mis",
+    "value", "values", "voffset", "volume", "vscale", "wavelength", "wavelength_max", "wavelength_min",
+    "wavelengths", "weight", "width", "window_end_time", "window_start_time", "wrap_mode", "year",
 ];
 
 /// Whether some plugin has a property of this name.
@@ -121,6 +122,17 @@ pub(super) const EMITTERS_LATER: &[&str] =
 pub(super) const TEXTURES: &[&str] = &["bitmap", "checkerboard"];
 
 pub(super) const TEXTURES_LATER: &[&str] = &["mesh_attribute", "volume", "gridtexture", "scale", "wireframe"];
+
+pub(super) const MEDIA: &[&str] = &["homogeneous", "heterogeneous"];
+
+pub(super) const VOLUMES: &[&str] = &["constvolume", "gridvolume"];
+
+pub(super) const VOLUMES_LATER: &[&str] = &["openvdb", "hgridvolume", "volcache"];
+
+pub(super) const PHASES: &[&str] = &["isotropic", "hg", "rayleigh"];
+
+pub(super) const PHASES_LATER: &[&str] =
+    &["microflake", "sggx", "blendphase", "mixturephase", "tabphase", "tabphase_irregular", "kkay"];
 
 pub(super) const SPECTRA_LATER: &[&str] = &["blackbody", "regular", "irregular", "rawconstant", "srgb"];
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use nephroid::handle::{Arena, Handle};
 use nephroid::light::Light;
 use nephroid::material::Material;
+use nephroid::medium::{Media, Medium};
 use nephroid::shape::{Group, Instance, Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
 
@@ -17,6 +18,7 @@ use super::open::find;
 use super::parameters::shortened;
 use super::properties::Plugin;
 use super::value::Ids;
+use super::volume::StoredGrid;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::vfs::Files;
 
@@ -53,12 +55,15 @@ pub(super) struct Reader<'t> {
     /// Where the shapes of groups stand; they count after those of the scene.
     pub(super) shapes_of_groups: Vec<Location>,
     pub(super) lights: Vec<Light>,
+    pub(super) media: Media,
     pub(super) origins: Origins,
     pub(super) texture_of: BTreeMap<usize, Outcome<Texture>>,
     pub(super) material_of: BTreeMap<usize, Outcome<Material>>,
     pub(super) group_of: BTreeMap<usize, Outcome<Group>>,
+    pub(super) medium_of: BTreeMap<usize, Outcome<Medium>>,
     pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Image>>,
     pub(super) mesh_of: BTreeMap<MeshKey, Handle<Mesh>>,
+    pub(super) grid_of: BTreeMap<PathBuf, StoredGrid>,
     /// The material of shapes without one, and of lamps without one.
     pub(super) default_materials: [Option<Handle<Material>>; 2],
     nesting: usize,
@@ -87,12 +92,15 @@ impl<'t> Reader<'t> {
             instances: Vec::new(),
             shapes_of_groups: Vec::new(),
             lights: Vec::new(),
+            media: Media::default(),
             origins,
             texture_of: BTreeMap::new(),
             material_of: BTreeMap::new(),
             group_of: BTreeMap::new(),
+            medium_of: BTreeMap::new(),
             image_of: BTreeMap::new(),
             mesh_of: BTreeMap::new(),
+            grid_of: BTreeMap::new(),
             default_materials: [None; 2],
             nesting: 0,
         }
@@ -170,8 +178,7 @@ impl<'t> Reader<'t> {
                     self.texture(element);
                 }
                 "medium" => {
-                    let plugin = self.plugin(element);
-                    self.left_out(plugin.location(), &format!("medium \"{}\"", shortened(plugin.kind)));
+                    self.medium(element);
                 }
                 // A property at this level belongs to nothing; a plugin waits for references to it.
                 tag if PROPERTY_TAGS.contains(&tag) => {

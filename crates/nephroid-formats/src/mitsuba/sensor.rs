@@ -55,11 +55,9 @@ impl<'t> Reader<'t> {
         plugin.ignore(&["near_clip", "far_clip", "focus_distance", "shutter_open", "shutter_close", "srf"]);
         let film = self.film(plugin.only_object("film"));
         let sample_count = plugin.only_object("sampler").and_then(|sampler| self.sample_count(sampler));
-        for (property, _) in plugin.objects("medium") {
-            self.left_out(&property.location, "the medium around the sensor");
-        }
+        let medium = self.surroundings(&plugin);
         plugin.finish();
-        Some(Sensor { camera: Camera { to_world, projection, medium: None }, film, sample_count })
+        Some(Sensor { camera: Camera { to_world, projection, medium }, film, sample_count })
     }
 
     /// A perspective camera with a lens. As in Mitsuba, the lens must have a radius, and what is in focus

@@ -58,18 +58,19 @@ impl<'t> Reader<'t> {
         let to_world = plugin.transform("to_world");
         let flip_normals = plugin.boolean("flip_normals", false);
         plugin.ignore(&["silhouette_sampling_weight"]);
-        for (property, medium) in plugin.objects("medium") {
-            if medium.location == property.location {
-                let kind = medium.value_of("type").unwrap_or_default();
-                self.left_out(&property.location, &format!("medium \"{}\"", shortened(kind)));
-            } else {
-                self.left_out(&property.location, "the medium that the shape bounds");
-            }
-        }
-        let emission = self.emission(plugin);
+        let mut boundary = self.boundary(plugin);
+        let emission = self.emission(plugin, &mut boundary);
         let material = match plugin.only_object("bsdf") {
             Some(bsdf) => self.material(bsdf),
-            None => Some(self.default_material(plugin, emission.is_some())),
+            None => {
+                if boundary.is_named() {
+                    let message =
+                        "the shape bounds a medium but names no material, and so lets no light through";
+                    let message = Diagnostic::warning(plugin.location(), message);
+                    self.log.push(message.hint("<bsdf type=\"null\"/> does"));
+                }
+                Some(self.default_material(plugin, emission.is_some()))
+            }
         };
         plugin.finish();
         let name = plugin.name();
@@ -80,7 +81,7 @@ impl<'t> Reader<'t> {
             material: material?,
             emission,
             flip_normals,
-            boundary: Boundary::default(),
+            boundary,
         })
     }
 
@@ -100,8 +101,8 @@ impl<'t> Reader<'t> {
         Some(Geometry::Cylinder { p0, p1, radius: plugin.positive("radius", 1.0) })
     }
 
-    /// The radiance of an area emitter inside a shape.
-    fn emission(&mut self, shape: &Plugin<'t>) -> Option<Handle<Texture>> {
+    /// The radiance of an area emitter inside a shape, and the medium that its light starts in.
+    fn emission(&mut self, shape: &Plugin<'t>, boundary: &mut Boundary) -> Option<Handle<Texture>> {
         let plugin = self.plugin(shape.only_object("emitter")?);
         if plugin.kind != "area" {
             let message = format!("a shape's emitter must be \"area\", not \"{}\"", shortened(plugin.kind));
@@ -109,6 +110,7 @@ impl<'t> Reader<'t> {
             return None;
         }
         let radiance = self.texture_property(&plugin, "radiance", 1.0, Role::Emission);
+        boundary.light = self.surroundings(&plugin);
         plugin.ignore(&["sampling_weight"]);
         plugin.finish();
         Some(radiance)

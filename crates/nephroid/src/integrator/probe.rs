@@ -24,6 +24,11 @@ pub enum LightPart {
     Medium,
 }
 
+impl LightPart {
+    /// Every one of them.
+    pub const ALL: [Self; 5] = [Self::Emitted, Self::Direct, Self::Global, Self::Caustic, Self::Medium];
+}
+
 /// The photon maps of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MapName {

@@ -21,27 +21,6 @@ impl VolumePhotons {
         Self { photons, emitted }
     }
 }
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beam {
-    pub origin: Vec3,
-    pub direction: Vec3,
-    pub length: f32,
-    pub power: Rgb,
-    pub depth: u16,
-    pub light: u32,
-    pub medium: u16,
-    pub long: bool,
-}
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Beams {
-    beams: Vec<Beam>,
-    emitted: u64,
-}
-impl Beams {
-    pub fn new(emitted: u64, beams: Vec<Beam>) -> Self {
-        Self { beams, emitted }
-    }
-}
 pub struct VolumeMap(VolumePhotons);
 impl VolumeMap {
     pub fn build(photons: VolumePhotons, _k: u32) -> Self {
@@ -93,37 +72,5 @@ impl VolumeMap {
         _visit: impl FnMut(&VolumePhoton, f32),
     ) -> Gathered {
         Gathered { radius: 0.1, count: 0 }
-    }
-}
-#[derive(Clone, Copy, Debug)]
-pub enum BeamWidth {
-    Fixed { radius: f32 },
-    Crossing { k: f32 },
-}
-pub struct BeamMap(Beams);
-impl BeamMap {
-    pub fn build(beams: Beams, _w: BeamWidth) -> Self {
-        Self(beams)
-    }
-    pub fn len(&self) -> usize {
-        self.0.beams.len()
-    }
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-    pub fn emitted(&self) -> u64 {
-        self.0.emitted
-    }
-    pub fn memory_bytes(&self) -> usize {
-        0
-    }
-    pub fn along(
-        &self,
-        _ray: &Ray,
-        _t_max: f32,
-        _medium: u16,
-        _kernel: Kernel,
-        _visit: impl FnMut(f32, f32, &Beam, f32),
-    ) {
     }
 }

@@ -234,7 +234,7 @@ impl<'a> PhotonMapper<'a> {
         if !sample.index.is_multiple_of(self.stride) {
             return;
         }
-        let throughput *= self.stride as f32;
+        let throughput = throughput * self.stride as f32;
         tools.probe.carry(throughput);
         let look_up = |map, direct, other| LookUp { map, direct, other };
         if self.config.shows_caustics() {
