@@ -53,6 +53,8 @@ mod width;
 #[cfg(test)]
 mod along_tests;
 #[cfg(test)]
+mod map_tests;
+#[cfg(test)]
 mod mean_tests;
 #[cfg(test)]
 mod testing;
