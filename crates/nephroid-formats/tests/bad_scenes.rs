@@ -8,7 +8,7 @@ use nephroid_formats::vfs::MemoryFiles;
 fn files() -> MemoryFiles {
     MemoryFiles::default()
         .with("cycle.xml", r#"<scene version="3.0.0"><include filename="cycle.xml"/></scene>"#)
-        .with("old.xml", r#"<scene version="0.6.0"/>"#)
+        .with("old.xml", r#"<scene version="1.0.0"/>"#)
         .with("broken.xml", r#"<scene version="3.0.0">
 <shape>"#)
         .with("latin1.xml", b"<scene version=\x223.0.0\x22>\x0a<!-- \xe9 --></scene>")
@@ -77,12 +77,12 @@ fn texts_that_are_no_scene() {
         r#"s.xml:1:1: error: <scene> lacks the attribute "version"; write <scene version="3.0.0">"#,
     );
     check_whole(
-        r#"<scene version="0.6.0"/>"#,
-        "s.xml:1:17: error: scenes of Mitsuba 0.6.0 cannot be read yet; versions 2 and 3 can; `mitsuba` writes a newer file when it loads an old one",
+        r#"<scene version="1.0.0"/>"#,
+        r#"s.xml:1:17: error: unknown scene version "1.0.0"; versions 0.4 to 0.6, 2 and 3 can be read"#,
     );
     check_whole(
         r#"<scene version="9.1"/>"#,
-        r#"s.xml:1:17: error: unknown scene version "9.1"; versions 2 and 3 can be read"#,
+        r#"s.xml:1:17: error: unknown scene version "9.1"; versions 0.4 to 0.6, 2 and 3 can be read"#,
     );
     check_whole(
         r#"<scene version="new"/>"#,
@@ -112,7 +112,7 @@ fn broken_includes() {
     check("<include/>", r#"s.xml:2:1: error: <include> lacks the attribute "filename""#);
     check(
         r#"<include filename="old.xml"/>"#,
-        "old.xml:1:17: error: scenes of Mitsuba 0.6.0 cannot be read yet; versions 2 and 3 can; `mitsuba` writes a newer file when it loads an old one",
+        r#"old.xml:1:17: error: unknown scene version "1.0.0"; versions 0.4 to 0.6, 2 and 3 can be read"#,
     );
     check(
         r#"<include filename="broken.xml"/>"#,
@@ -165,7 +165,7 @@ s.xml:2:22: error: <float> lacks the attribute "value""#,
     );
     check(
         r#"<shape type="sphere"><float name="nothing_like_it" value="2"/></shape>"#,
-        r#"s.xml:2:35: error: <shape type="sphere"> has no property "nothing_like_it"; it has center, radius, to_world, flip_normals, silhouette_sampling_weight"#,
+        r#"s.xml:2:35: error: <shape type="sphere"> has no property "nothing_like_it"; it has center, radius, to_world, flip_normals, silhouette_sampling_weight, interior, exterior, priority"#,
     );
     check(
         r#"<shape type="sphere"><float name="radius" value="1"/><float name="radius" value="2"/></shape>"#,
@@ -635,16 +635,6 @@ fn what_cannot_be_rendered_yet() {
     check(
         r#"<emitter type="sunsky"/>"#,
         r#"s.xml:2:16: error: emitter "sunsky" cannot be rendered yet; --lenient leaves it out"#,
-    );
-    check(
-        r#"<medium type="homogeneous" id="fog"/>
-<shape type="sphere"><ref name="interior" id="fog"/></shape>"#,
-        r#"s.xml:2:15: error: medium "homogeneous" cannot be rendered yet; --lenient leaves it out
-s.xml:3:47: error: the medium that the shape bounds cannot be rendered yet; --lenient leaves it out"#,
-    );
-    check(
-        r#"<shape type="sphere"><medium name="interior" type="homogeneous"/></shape>"#,
-        r#"s.xml:2:22: error: medium "homogeneous" cannot be rendered yet; --lenient leaves it out"#,
     );
 }
 

@@ -9,6 +9,7 @@ use nephroid::handle::Handle;
 use nephroid::light::LightKind;
 use nephroid::material::{Material, Metal};
 use nephroid::math::{Vec2, Vec3};
+use nephroid::medium::Boundary;
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::{BitmapFilter, Texture, Wrap};
@@ -499,10 +500,12 @@ fn textures() {
 
 #[test]
 fn what_cannot_be_rendered_yet_is_left_out_on_request() {
-    let content = r#"<shape type="serialized"/><emitter type="sunsky"/><medium type="homogeneous" id="fog"/>
+    let content = r#"<shape type="serialized"/><emitter type="sunsky"/><medium type="heterogeneous" id="fog">
+        <volume name="sigma_t" type="openvdb"/></medium>
         <shape type="sphere"><bsdf type="null"/><ref name="interior" id="fog"/></shape>"#;
     let file = read_with(content, &files(), &Options { defines: Vec::new(), lenient: true });
-    assert_eq!((file.scene.shapes.len(), file.scene.lights.len(), file.warnings.len()), (1, 0, 4));
+    assert_eq!((file.scene.shapes.len(), file.scene.lights.len(), file.warnings.len()), (1, 0, 3));
+    assert!(file.scene.media.list.is_empty() && file.scene.shapes[0].boundary == Boundary::default());
     assert_eq!(
         file.warnings[0].to_string(),
         "s.xml:2:14: warning: shape \"serialized\" cannot be rendered yet and is left out"
