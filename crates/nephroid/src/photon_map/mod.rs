@@ -1,5 +1,5 @@
-//! Photons on surfaces: their map, the search for the nearest ones, kernels, and the geometry of the
-//! radiance estimate. Knows neither materials nor how photons come about.
+//! Photons on surfaces and in media: their maps, the search for the nearest ones, kernels, and the geometry of
+//! the radiance estimates. Knows neither materials nor media, nor how photons come about.
 
 mod block;
 mod brute_force;
@@ -11,6 +11,7 @@ mod kernel;
 mod map;
 mod payload;
 mod photon;
+mod volume;
 
 #[cfg(test)]
 mod estimate_tests;
@@ -26,3 +27,4 @@ pub use index::{Item, NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;
 pub use map::PhotonMap;
 pub use photon::{Photon, Photons};
+pub use volume::{VolumeMap, VolumePhoton, VolumePhotons, VolumeQuery};
