@@ -107,4 +107,11 @@ impl Blocks {
         let (x, y, z) = (L::load(&block.x).minus(x), L::load(&block.y).minus(y), L::load(&block.z).minus(z));
         x.times(x).plus(y.times(y)).plus(z.times(z))
     }
+
+    /// The coordinates of the points in a block.
+    #[inline(always)]
+    pub fn coordinates<L: Lanes>(&self, number: usize) -> [L; 3] {
+        let block = &self.blocks[number];
+        [L::load(&block.x), L::load(&block.y), L::load(&block.z)]
+    }
 }

@@ -21,7 +21,7 @@ const MAX_THICKNESS: f32 = 0.25;
 
 /// Photons that must be found, if k are not, for the last of them to set the radius: the fewest for
 /// which the variance of 1/r² is finite.
-const ENOUGH: usize = 3;
+pub(super) const ENOUGH: usize = 3;
 
 /// Where and for what to gather photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +112,7 @@ pub fn gather<I: PhotonIndex>(
         |place, dist_sq| distance_sq(map, query, place, dist_sq),
         scratch,
     );
-    let found = before_a_gap(scratch);
+    let found = before_a_gap(scratch, |d_sq| d_sq);
     if found < k.min(ENOUGH) {
         return gather_within(map, query, kernel, max_radius, add);
     }
@@ -131,13 +131,14 @@ pub fn gather<I: PhotonIndex>(
 /// photon in it. There the surface ends, and what follows lies on another that happens to look the same
 /// way, such as the next ball. In uniform light i photons are followed by a disc a times as large, empty
 /// but for them, with the chance a^-i; a gap is what has a chance below one in 4¹² = 17 million, for a
-/// picture asks millions of times, and each gap that is none makes a white speck.
-fn before_a_gap(found: &NearestList) -> usize {
-    /// The ratio of the areas that makes a gap after so many photons, at most the last.
-    const GAPS: [f32; 13] = [
-        f32::INFINITY,
-        f32::INFINITY,
-        f32::INFINITY,
+/// picture asks millions of times, and each gap that is none makes a white speck. `measure` is what a squared
+/// distance encloses, in any unit: an area or, in space, a volume.
+pub(super) fn before_a_gap(found: &NearestList, measure: impl Fn(f64) -> f64) -> usize {
+    /// The ratio of the measures that makes a gap after so many photons, at most the last.
+    const GAPS: [f64; 13] = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::INFINITY,
         256.0,
         64.0,
         27.9,
@@ -149,8 +150,8 @@ fn before_a_gap(found: &NearestList) -> usize {
         4.54,
         4.0,
     ];
-    let dist_sq = |i: usize| found.get(i).map_or(0.0, |n| n.dist_sq);
-    let ends = |&i: &usize| dist_sq(i) > GAPS[i.min(12)] * dist_sq(i - 1);
+    let within = |i: usize| found.get(i).map_or(0.0, |n| measure(f64::from(n.dist_sq)));
+    let ends = |&i: &usize| within(i) > GAPS[i.min(12)] * within(i - 1);
     (ENOUGH..found.len()).find(ends).unwrap_or(found.len())
 }
 
@@ -182,7 +183,7 @@ fn gather_within<I: PhotonIndex>(
 }
 
 /// A kernel at a radius, its constants multiplied.
-struct Spread {
+pub(super) struct Spread {
     kernel: Kernel,
     per_radius_sq: f32,
     per_area: f32,
@@ -191,7 +192,7 @@ struct Spread {
 impl Spread {
     /// `None` unless the radius is positive and its square, and one over that, are numbers.
     #[inline]
-    fn new(kernel: Kernel, radius: f32) -> Option<Self> {
+    pub fn new(kernel: Kernel, radius: f32) -> Option<Self> {
         let per_radius_sq = 1.0 / (radius * radius);
         let per_area = kernel.norm_2d() * per_radius_sq / PI;
         (radius > 0.0 && per_radius_sq > 0.0 && per_area.is_finite()).then_some(Self {
@@ -203,7 +204,7 @@ impl Spread {
 
     /// Weight in 1/m² at a squared distance within the radius, or at it up to rounding.
     #[inline(always)]
-    fn weight(&self, dist_sq: f32) -> f32 {
+    pub fn weight(&self, dist_sq: f32) -> f32 {
         self.per_area * self.kernel.shape((dist_sq * self.per_radius_sq).min(1.0))
     }
 }

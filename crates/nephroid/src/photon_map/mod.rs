@@ -1,6 +1,6 @@
-//! Photons on surfaces: their map, the search for the nearest ones, kernels, and the geometry of the
-//! radiance estimate. Beams of photons in media, and those that pass a ray. Knows neither materials nor media
-//! nor how photons come about.
+//! Photons on surfaces and in media, and beams of them: their maps, the search for the nearest ones and for those
+//! that pass a ray, kernels, and the geometry of the radiance estimates. Knows neither materials nor media, nor how
+//! photons come about.
 
 mod beams;
 mod block;
@@ -13,8 +13,7 @@ mod kernel;
 mod map;
 mod payload;
 mod photon;
-mod stub;
-pub use stub::*;
+mod volume;
 
 #[cfg(test)]
 mod estimate_tests;
@@ -31,3 +30,4 @@ pub use index::{Item, NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;
 pub use map::PhotonMap;
 pub use photon::{Photon, Photons};
+pub use volume::{VolumeMap, VolumePhoton, VolumePhotons, VolumeQuery};

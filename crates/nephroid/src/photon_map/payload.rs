@@ -120,9 +120,7 @@ impl Payload {
 
     #[inline(always)]
     fn power(&self) -> Rgb {
-        let scale = f32::from_bits((u32::from(self.exponent) - BIAS) << 23);
-        let [r, g, b] = self.mantissas.map(|m| f32::from(m) * scale);
-        Rgb { r, g, b }
+        decode_power(self.mantissas, self.exponent)
     }
 
     /// The normal times some length between 1/√3 and 1.
@@ -138,7 +136,7 @@ impl Payload {
 }
 
 /// Mantissas m and exponent e of a power: it is about m 2^(e − 134).
-fn encode_power(power: Rgb, number: u32) -> ([u8; 3], u8) {
+pub(super) fn encode_power(power: Rgb, number: u32) -> ([u8; 3], u8) {
     let power = [power.r, power.g, power.b].map(|p| if p > 0.0 { p } else { 0.0 });
     let largest = power.into_iter().fold(0.0, f32::max).min(f32::MAX);
     let mut exponent = (largest.to_bits() >> 23).max(LEAST);
@@ -156,8 +154,16 @@ fn encode_power(power: Rgb, number: u32) -> ([u8; 3], u8) {
     ([mantissa(0), mantissa(1), mantissa(2)], exponent as u8)
 }
 
+/// The power of mantissas and an exponent.
+#[inline(always)]
+pub(super) fn decode_power(mantissas: [u8; 3], exponent: u8) -> Rgb {
+    let scale = f32::from_bits((u32::from(exponent) - BIAS) << 23);
+    let [r, g, b] = mantissas.map(|m| f32::from(m) * scale);
+    Rgb { r, g, b }
+}
+
 /// The nearest point of the octahedron's square.
-fn encode_direction(v: Vec3) -> [i16; 2] {
+pub(super) fn encode_direction(v: Vec3) -> [i16; 2] {
     let p = v / (v.x.abs() + v.y.abs() + v.z.abs());
     let (x, y) = if p.z >= 0.0 {
         (p.x, p.y)
@@ -171,7 +177,7 @@ fn encode_direction(v: Vec3) -> [i16; 2] {
 
 /// The point of the octahedron, |x| + |y| + |z| = 1, that a point of the square stands for.
 #[inline(always)]
-fn octahedron(square: [i16; 2]) -> Vec3 {
+pub(super) fn octahedron(square: [i16; 2]) -> Vec3 {
     let [x, y] = square.map(|c| f32::from(c) * (1.0 / STEPS));
     let z = 1.0 - x.abs() - y.abs();
     let fold = (-z).max(0.0);
