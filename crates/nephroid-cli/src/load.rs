@@ -111,5 +111,6 @@ fn origin<'o>(subject: Subject, origins: &'o Origins, meshes: &[Option<usize>]) 
         }
         Subject::Texture(i) => origins.textures.get(i),
         Subject::Image(i) => origins.images.get(i),
+        Subject::Medium(_) | Subject::Grid(_) => None,
     }
 }

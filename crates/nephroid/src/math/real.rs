@@ -74,6 +74,12 @@ pub fn pow(base: f32, exponent: f32) -> f32 {
     libm::powf(base, exponent)
 }
 
+/// Cube root.
+#[inline]
+pub fn cbrt(x: f32) -> f32 {
+    libm::cbrtf(x)
+}
+
 /// Sine of an angle in degrees, exact at multiples of a right angle.
 #[inline]
 pub fn sin_deg(degrees: f64) -> f64 {

@@ -1,17 +1,29 @@
-use super::{Coefficient, Grid, Medium, Phase};
+use super::cloud::Cloud;
+use super::distance::lit_length;
+use super::field::Field;
+use super::profile::Profile;
+use super::{Grid, Medium, Phase, uniform};
 use crate::color::Rgb;
 use crate::handle::Arena;
-use crate::math::{Ray, Vec3, real};
+use crate::math::{Ray, Vec3};
 use crate::sampling::Sampler;
 
 /// A medium as light meets it.
 #[derive(Clone, Debug)]
 pub(crate) struct Matter {
     phase: Phase,
-    sigma_t: Rgb,
-    albedo: Rgb,
-    emission: Rgb,
+    extinction: Extinction,
+    albedo: Field,
+    emission: Field,
+    emits: bool,
     ambient: Rgb,
+    max_extinction: Rgb,
+}
+
+#[derive(Clone, Debug)]
+enum Extinction {
+    Uniform(Rgb),
+    Cloud(Box<Cloud>),
 }
 
 /// What becomes of light on its way through a medium.
@@ -24,51 +36,26 @@ pub(crate) enum Passage {
     Through { weight: Rgb },
 }
 
-/// The transmittance along a ray from its origin on.
-#[derive(Clone, Debug)]
-pub(crate) struct Profile {
-    sigma_t: Rgb,
-}
-
-impl Profile {
-    /// Samples a distance between two by the transmittance of the mean channel; the farther may be infinite.
-    pub fn sample(&self, u: f32, from: f32, to: f32) -> f32 {
-        let sigma = self.sigma_t.mean();
-        if sigma == 0.0 {
-            return from + u * (to - from);
-        }
-        let share = -real::exp_m1(-sigma * (to - from));
-        (from - real::ln(1.0 - u * share) / sigma).min(to)
-    }
-
-    /// The density of [`Self::sample`] per length.
-    pub fn pdf(&self, t: f32, from: f32, to: f32) -> f32 {
-        let sigma = self.sigma_t.mean();
-        if sigma == 0.0 {
-            return 1.0 / (to - from);
-        }
-        sigma * real::exp(-sigma * (t - from)) / -real::exp_m1(-sigma * (to - from))
-    }
-
-    /// Transmittance from the origin to `t`.
-    #[inline]
-    pub fn transmittance(&self, t: f32) -> Rgb {
-        attenuation(self.sigma_t, t)
-    }
-}
-
 impl Matter {
-    pub fn new(medium: &Medium, _grids: &Arena<Grid>) -> Self {
-        let constant = |c: &Coefficient| match c {
-            Coefficient::Constant(value) => *value,
-            Coefficient::Grid { .. } => Rgb::BLACK,
+    /// Of a medium that passed the check.
+    pub fn new(medium: &Medium, grids: &Arena<Grid>) -> Self {
+        let extinction = match Field::new(&medium.sigma_t, grids) {
+            Field::Constant(sigma_t) => Extinction::Uniform(sigma_t),
+            Field::Placed(placed) => Extinction::Cloud(Box::new(Cloud::new(placed))),
         };
+        let max_extinction = match &extinction {
+            Extinction::Uniform(sigma_t) => *sigma_t,
+            Extinction::Cloud(cloud) => cloud.max(),
+        };
+        let emission = Field::new(&medium.emission, grids);
         Self {
             phase: medium.phase,
-            sigma_t: constant(&medium.sigma_t),
-            albedo: constant(&medium.albedo),
-            emission: constant(&medium.emission),
+            extinction,
+            albedo: Field::new(&medium.albedo, grids),
+            emits: !emission.is_black(),
+            emission,
             ambient: medium.ambient,
+            max_extinction,
         }
     }
 
@@ -81,84 +68,130 @@ impl Matter {
         self.ambient
     }
 
-    /// The extinction if it is the same everywhere.
-    pub fn uniform_extinction(&self) -> Option<Rgb> {
-        Some(self.sigma_t)
-    }
-
-    /// Whether it gives off light.
-    pub fn emits(&self) -> bool {
-        !self.emission.is_black()
-    }
-
-    pub fn sigma_t(&self, _p: Vec3) -> Rgb {
-        self.sigma_t
-    }
-
-    pub fn albedo(&self, _p: Vec3) -> Rgb {
-        self.albedo
-    }
-
-    /// W/(m³·sr).
-    pub fn emission(&self, _p: Vec3) -> Rgb {
-        self.emission
-    }
-
-    /// Transmittance along a ray with a direction of unit length from its origin to `t_max`, which may be
-    /// infinite; right in the mean.
-    pub fn transmittance(&self, _ray: &Ray, t_max: f32, _sampler: &mut Sampler) -> Rgb {
-        attenuation(self.sigma_t, t_max)
-    }
-
-    /// The transmittance of a way in a medium that is the same everywhere.
+    /// The transmittance of a way in a medium that is the same everywhere, and 1 elsewhere.
+    #[inline]
     pub fn attenuation(&self, length: f32) -> Rgb {
-        attenuation(self.sigma_t, length)
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => uniform::attenuation(*sigma_t, length),
+            Extinction::Cloud(_) => Rgb::WHITE,
+        }
     }
 
-    /// How far light may come through, along any ray, before less than 2·10⁻⁹ of every channel is left.
-    pub fn reach(&self, _ray: &Ray) -> f32 {
-        20.0 / self.sigma_t.min_channel()
-    }
-
-    /// Goes along a ray with a direction of unit length, at most to `t_max`, which may be infinite, with light that carries
-    /// `carried`, to which the channel that decides is fitted. Right in the mean for every channel.
-    pub fn travel(&self, _ray: &Ray, t_max: f32, carried: Rgb, sampler: &mut Sampler) -> Passage {
-        let share = carried / (carried.r + carried.g + carried.b);
-        let (u_channel, u) = (sampler.next_1d(), sampler.next_1d());
-        let channel = match u_channel {
-            u if u < share.r => self.sigma_t.r,
-            u if u < share.r + share.g => self.sigma_t.g,
-            _ => self.sigma_t.b,
-        };
-        let t = -real::ln(1.0 - u) / channel;
-        if t < t_max {
-            let density = self.sigma_t * attenuation(self.sigma_t, t);
-            Passage::Collision { t, weight: density / (share * density).sum() }
-        } else {
-            let through = attenuation(self.sigma_t, t_max);
-            Passage::Through { weight: through / (share * through).sum() }
+    /// Where along a ray the last of the extinction lies, or less than 2·10⁻⁹ of every channel is left.
+    pub fn reach(&self, ray: &Ray) -> f32 {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => 20.0 / sigma_t.min_channel(),
+            Extinction::Cloud(cloud) => cloud.exit(ray),
         }
     }
 
     /// The radiance that the medium itself gives off towards the origin of a ray with a direction of unit length,
     /// from its way to `t_max`, in W/(m²·sr); right in the mean.
-    pub fn emitted(&self, _ray: &Ray, t_max: f32, _sampler: &mut Sampler) -> Rgb {
-        self.sigma_t.zip(self.emission, |sigma_t, emission| emission * lit_length(sigma_t, t_max))
+    pub fn emitted(&self, ray: &Ray, t_max: f32, sampler: &mut Sampler) -> Rgb {
+        match (&self.extinction, &self.emission) {
+            _ if !self.emits => Rgb::BLACK,
+            (Extinction::Uniform(sigma_t), Field::Constant(emission)) => {
+                sigma_t.zip(*emission, |sigma_t, emission| emission * lit_length(sigma_t, t_max))
+            }
+            _ => {
+                let end = t_max.min(self.reach(ray));
+                let t = end * sampler.next_1d();
+                self.emission(ray.at(t)) * self.transmittance(ray, t, sampler) * end
+            }
+        }
+    }
+
+    /// The extinction if it is the same everywhere.
+    pub fn uniform_extinction(&self) -> Option<Rgb> {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => Some(*sigma_t),
+            Extinction::Cloud(_) => None,
+        }
+    }
+
+    /// What the extinction nowhere exceeds, in 1/m.
+    pub fn max_extinction(&self) -> Rgb {
+        self.max_extinction
+    }
+
+    /// Whether it gives off light.
+    pub fn emits(&self) -> bool {
+        self.emits
+    }
+
+    /// 1/m.
+    #[inline]
+    pub fn sigma_t(&self, p: Vec3) -> Rgb {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => *sigma_t,
+            Extinction::Cloud(cloud) => cloud.at(p),
+        }
+    }
+
+    #[inline]
+    pub fn albedo(&self, p: Vec3) -> Rgb {
+        self.albedo.at(p)
+    }
+
+    /// W/(m³·sr).
+    #[inline]
+    pub fn emission(&self, p: Vec3) -> Rgb {
+        self.emission.at(p)
+    }
+
+    /// Transmittance along a ray with a direction of unit length from its origin to `t_max`, which may be
+    /// infinite; right in the mean.
+    #[inline]
+    pub fn transmittance(&self, ray: &Ray, t_max: f32, sampler: &mut Sampler) -> Rgb {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => uniform::attenuation(*sigma_t, t_max),
+            Extinction::Cloud(cloud) => cloud.transmittance(ray, t_max, sampler),
+        }
+    }
+
+    /// Goes along a ray with a direction of unit length, at most to `t_max`, which may be infinite, with light
+    /// that carries `carried`, to which the chances are fitted. Right in the mean for every channel that
+    /// carries something; and the sum of what is carried times its weight is the same before and after.
+    #[inline]
+    pub fn travel(&self, ray: &Ray, t_max: f32, carried: Rgb, sampler: &mut Sampler) -> Passage {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => uniform::travel(*sigma_t, t_max, carried, sampler),
+            Extinction::Cloud(cloud) => cloud.travel(ray, t_max, carried, sampler, |_, _, _| {}),
+        }
+    }
+
+    /// The same, and tells `passed` of stretches of the way and of their weights. Right in the mean is at each point of
+    /// the ray the weight of a stretch that contains it; where there is a closed form for that, none is told.
+    #[inline]
+    pub fn travel_and_tell(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        carried: Rgb,
+        sampler: &mut Sampler,
+        passed: impl FnMut(f32, f32, Rgb),
+    ) -> Passage {
+        match &self.extinction {
+            Extinction::Uniform(_) => self.travel(ray, t_max, carried, sampler),
+            Extinction::Cloud(cloud) => cloud.travel(ray, t_max, carried, sampler, passed),
+        }
     }
 
     /// The transmittance along a ray with a direction of unit length, up to `t_max`, without noise.
-    pub fn profile(&self, _ray: &Ray, _t_max: f32) -> Profile {
-        Profile { sigma_t: self.sigma_t }
+    pub fn profile(&self, ray: &Ray, t_max: f32) -> Profile {
+        let mut profile = Profile::default();
+        self.profile_into(ray, t_max, &mut profile);
+        profile
     }
-}
 
-/// The integral of the transmittance up to t: (1 − e^(−σt)) / σ, and t where there is nothing.
-fn lit_length(sigma_t: f32, t: f32) -> f32 {
-    if sigma_t > 0.0 { -real::exp_m1(-sigma_t * t) / sigma_t } else { t }
-}
-
-/// e^(−σt), and 1 where there is nothing even on an infinite way.
-fn attenuation(sigma_t: Rgb, t: f32) -> Rgb {
-    let through = |sigma: f32| if sigma > 0.0 { real::exp(-sigma * t) } else { 1.0 };
-    Rgb::new(through(sigma_t.r), through(sigma_t.g), through(sigma_t.b))
+    /// The same in the memory of another.
+    pub fn profile_into(&self, ray: &Ray, t_max: f32, profile: &mut Profile) {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => profile.reset(*sigma_t),
+            Extinction::Cloud(cloud) => {
+                profile.reset(Rgb::BLACK);
+                cloud.profile(ray, t_max, profile);
+            }
+        }
+    }
 }

@@ -1,13 +1,30 @@
 //! Participating media. A [`Medium`] is what the scene says; [`Matter`] is what the world makes of it:
 //! distances to collisions, transmittance, and how light is scattered.
 
+mod cells;
+mod check;
+mod cloud;
+mod distance;
+mod field;
 mod grid;
+mod majorant;
 mod matter;
 mod phase;
+mod profile;
+mod uniform;
 
+#[cfg(test)]
+mod matter_tests;
+#[cfg(test)]
+mod profile_tests;
+#[cfg(test)]
+mod testing;
+
+pub(crate) use check::{check_boundary, check_grid, check_medium, check_start};
 pub use grid::{Grid, GridValues};
-pub(crate) use matter::{Matter, Passage, Profile};
+pub(crate) use matter::{Matter, Passage};
 pub use phase::{Phase, PhaseSample};
+pub(crate) use profile::Profile;
 
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};

@@ -7,6 +7,7 @@ use crate::film::Filter;
 use crate::light::LightKind;
 use crate::material::{self, Material};
 use crate::math::Transform;
+use crate::medium;
 use crate::shape::{Geometry, Mesh};
 use crate::texture::Texture;
 
@@ -26,6 +27,7 @@ pub(crate) fn check(scene: &Scene) -> Vec<SceneError> {
     check_shapes(scene, &mut problems);
     check_groups(scene, &mut problems);
     check_lights(scene, &mut problems);
+    check_media(scene, &mut problems);
     problems.0
 }
 
@@ -124,6 +126,26 @@ fn check_materials(scene: &Scene, problems: &mut Problems) {
     for (handle, _) in scene.materials.iter_handles() {
         for message in material::check(&scene.materials, handle, &scene.textures) {
             problems.add(Subject::Material(handle.index()), message);
+        }
+    }
+}
+
+/// Grids, media, and what refers to media.
+fn check_media(scene: &Scene, problems: &mut Problems) {
+    let media = &scene.media;
+    let grids = media.grids.iter().map(medium::check_grid);
+    let list = media.list.iter().map(|each| medium::check_medium(media, each));
+    let shapes = scene.all_shapes().map(|shape| medium::check_boundary(media, &shape.boundary));
+    let lights = scene.lights.iter().map(|light| medium::check_start(media, light.medium));
+    let camera = medium::check_start(media, scene.camera.medium);
+    let found = (grids.enumerate().map(|(i, list)| (Subject::Grid(i), list)))
+        .chain(list.enumerate().map(|(i, list)| (Subject::Medium(i), list)))
+        .chain(shapes.enumerate().map(|(i, list)| (Subject::Shape(i), list)))
+        .chain(lights.enumerate().map(|(i, list)| (Subject::Light(i), list)))
+        .chain([(Subject::Camera, camera)]);
+    for (subject, list) in found {
+        for message in list {
+            problems.add(subject, message);
         }
     }
 }
@@ -357,10 +379,9 @@ mod tests {
     use crate::film::FilmSettings;
     use crate::handle::Arena;
     use crate::light::Light;
-    use crate::math::{Affine2, DVec3, Vec2};
-    use crate::medium::Boundary;
-    use crate::medium::Media;
-    use crate::shape::Shape;
+    use crate::math::{Affine2, DVec3, Vec2, Vec3};
+    use crate::medium::{Boundary, Grid, GridValues, Medium, Phase};
+    use crate::shape::{Group, Shape};
     use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
 
     fn empty() -> Scene {
@@ -379,7 +400,7 @@ mod tests {
             groups: Arena::default(),
             instances: Vec::new(),
             lights: Vec::new(),
-            media: Media::default(),
+            media: medium::Media::default(),
         }
     }
 
@@ -431,6 +452,43 @@ mod tests {
             [
                 "its `to_world` may turn, mirror and scale alike on each axis, but not stretch or shear",
                 "a pixel of its light's texture is negative: light cannot be",
+            ]
+        );
+    }
+
+    #[test]
+    fn media_that_are_referred_to_exist() {
+        let mut scene = empty();
+        scene.media.grids.push(Grid {
+            name: "smoke".into(),
+            size: [1; 3],
+            values: GridValues::Grey(vec![-1.0]),
+        });
+        let fog = Medium::homogeneous("fog", Rgb::splat(-1.0), Rgb::BLACK, Phase::Isotropic);
+        let (mut other, known) = (Arena::default(), scene.media.list.push(fog.clone()));
+        let missing = [other.push(fog.clone()), other.push(fog)][1];
+        scene.camera.medium = Some(missing);
+        let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::WHITE };
+        scene.lights.push(Light { name: "lamp".into(), kind, medium: Some(missing) });
+        let reflectance = scene.textures.constant(Rgb::WHITE);
+        let material = scene.materials.push(Material::Diffuse { reflectance });
+        let shape = Shape {
+            boundary: Boundary { interior: Some(missing), exterior: Some(known), ..Boundary::default() },
+            ..Shape::new("ball", Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 }, material)
+        };
+        scene.shapes.push(shape.clone());
+        scene.groups.push(Group { name: String::new(), shapes: vec![shape] });
+        let found: Vec<String> = check(&scene).iter().map(ToString::to_string).collect();
+        assert_eq!(
+            found,
+            [
+                "grid 0: 1 of its 1 values are negative, infinite or not a number: each must be finite and \
+                 not negative",
+                "medium 0: sigma_t is -1, but must be finite and not negative in every channel",
+                "shape 0: its interior medium does not exist",
+                "shape 1: its interior medium does not exist",
+                "light 0: the medium that it is in does not exist",
+                "camera: the medium that it is in does not exist",
             ]
         );
     }

@@ -23,6 +23,10 @@ pub enum Subject {
     Instance(usize),
     /// A light without a surface.
     Light(usize),
+    /// A medium.
+    Medium(usize),
+    /// A grid of a medium's values.
+    Grid(usize),
 }
 
 /// Something a scene cannot be rendered with.
@@ -72,6 +76,8 @@ impl fmt::Display for SceneError {
             Subject::Group(i) => write!(f, "group {i}: "),
             Subject::Instance(i) => write!(f, "instance {i}: "),
             Subject::Light(i) => write!(f, "light {i}: "),
+            Subject::Medium(i) => write!(f, "medium {i}: "),
+            Subject::Grid(i) => write!(f, "grid {i}: "),
         }?;
         f.write_str(&self.message)
     }

@@ -177,14 +177,24 @@ fn step(
                 }
             }
             Fog::Volume => {
-                if visit(Event::Way(way(world, walker, matter, end)), walker.history.kind_in_medium())
-                    == Next::Stop
-                {
-                    book.end(walker.power);
+                let (kind, carried) = (walker.history.kind_in_medium(), walker.power);
+                let (mut beam, mut next) = (way(world, walker, matter, end), Next::Continue);
+                if beam.long {
+                    next = visit(Event::Way(beam), kind);
+                }
+                let passage =
+                    matter.travel_and_tell(&walker.ray, end, carried, sampler, |from, to, weight| {
+                        beam.origin = walker.ray.at(from);
+                        (beam.length, beam.power) = (to - from, carried * weight);
+                        if beam.length > 0.0 && !beam.power.is_black() && next == Next::Continue {
+                            next = visit(Event::Way(beam), kind);
+                        }
+                    });
+                if next == Next::Stop {
+                    book.end(carried);
                     return Next::Stop;
                 }
-                let carried = walker.power;
-                match matter.travel(&walker.ray, end, carried, sampler) {
+                match passage {
                     Passage::Through { weight } => walker.gamble(carried, carried * weight),
                     Passage::Collision { t, weight } => {
                         walker.gamble(carried, carried * weight);
@@ -290,7 +300,7 @@ fn way(world: &World, walker: &Walker, matter: &Matter, end: f32) -> Beam {
         depth: u16::try_from(walker.depth()).unwrap_or(u16::MAX),
         light: walker.light,
         medium: medium_number(walker.inside),
-        long: true,
+        long: matter.uniform_extinction().is_some(),
     }
 }
 

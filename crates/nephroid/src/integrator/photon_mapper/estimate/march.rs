@@ -6,7 +6,7 @@ use crate::color::Rgb;
 use crate::integrator::Probe;
 use crate::math::{Vec3, real};
 use crate::medium::Profile;
-use crate::photon_map::{Bandwidth, VolumeMap};
+use crate::photon_map::{Bandwidth, VolumeMap, VolumeQuery};
 use crate::sampling::Sampler;
 
 /// Of how many parts of the scene a step of the report's march is one.
@@ -25,7 +25,8 @@ impl PhotonMapper<'_> {
     ) -> Rgb {
         let end = segment.end.min(segment.matter.reach(segment.ray));
         let mut sum = Rgb::BLACK;
-        let (mut from, mut radius) = (0.0, map.default_max_radius(self.config.volume_neighbours()));
+        let (mut from, mut radius) =
+            (0.0, map.default_max_radius_in(segment.medium(), self.config.volume_neighbours()));
         while from < end {
             // The last step takes what would be left of another.
             let to = if from + 1.5 * radius < end { from + radius } else { end };
@@ -69,20 +70,16 @@ impl PhotonMapper<'_> {
         position: Vec3,
         tools: &mut Tools<'_, P>,
     ) -> (Rgb, f32) {
-        let (wo, phase, k) =
-            (-segment.ray.direction, segment.matter.phase(), self.config.volume_neighbours());
-        let bandwidth = Bandwidth::Nearest { k, max_radius: map.default_max_radius(k) };
-        let most = self.config.max_depth.map(|max| max.saturating_sub(segment.depth).min(65_535) as u16);
+        let (wo, phase) = (-segment.ray.direction, segment.matter.phase());
+        let (k, medium) = (self.config.volume_neighbours(), segment.medium());
+        let bandwidth = Bandwidth::Nearest { k, max_radius: map.default_max_radius_in(medium, k) };
+        let max_photon_depth =
+            self.config.max_depth.map(|max| max.saturating_sub(segment.depth).min(65_535) as u16);
+        let query = VolumeQuery { position, medium, max_photon_depth };
         let mut sum = Rgb::BLACK;
-        let gathered = map.at(
-            position,
-            segment.medium(),
-            most,
-            bandwidth,
-            self.config.kernel,
-            tools.neighbors,
-            |photon, weight| sum += photon.power * (phase.eval(wo, photon.wi) * weight),
-        );
+        let gathered = map.at(&query, self.config.kernel, bandwidth, tools.neighbors, |photon, weight| {
+            sum += photon.power * (phase.eval(wo, photon.wi) * weight);
+        });
         (sum, gathered.radius)
     }
 }
