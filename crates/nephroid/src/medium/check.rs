@@ -122,7 +122,7 @@ fn is_amount(value: Rgb) -> bool {
 }
 
 fn largest(grid: &Grid) -> f32 {
-    grid.values.iter().map(Rgb::max_channel).fold(0.0, f32::max)
+    grid.values.max_channel(0..grid.values.len())
 }
 
 /// One number for grey, three for colours.

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use crate::color::Rgb;
 use crate::math::Vec3;
 
@@ -46,6 +48,14 @@ impl GridValues {
     /// All in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = Rgb> {
         (0..self.len()).map(|i| self.get(i))
+    }
+
+    /// The largest channel of some cells by their numbers, and at least 0.
+    pub(crate) fn max_channel(&self, cells: Range<usize>) -> f32 {
+        match self {
+            Self::Grey(values) => values[cells].iter().copied().fold(0.0, f32::max),
+            Self::Rgb(values) => values[cells].iter().map(|v| v.max_channel()).fold(0.0, f32::max),
+        }
     }
 
     /// Each multiplied by a factor.

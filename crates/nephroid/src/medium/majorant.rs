@@ -32,13 +32,12 @@ impl Majorants {
         for bz in 0..count[2] {
             for by in 0..count[1] {
                 for bx in 0..count[0] {
+                    let xs = reach(0, bx);
                     let mut bound = 0.0f32;
                     for z in reach(2, bz) {
                         for y in reach(1, by) {
-                            for x in reach(0, bx) {
-                                let value = grid.values.get((z * size[1] + y) * size[0] + x);
-                                bound = bound.max(value.max_channel());
-                            }
+                            let row = (z * size[1] + y) * size[0];
+                            bound = bound.max(grid.values.max_channel(row + xs.start..row + xs.end));
                         }
                     }
                     // Interpolation rounds seven times at most.

@@ -4,7 +4,7 @@
 use nephroid_testkit::{ALPHA, MeanTest, Outcome, Tolerance, binomial_test, integrate, sidak};
 
 use super::testing::{Case, grey, patchy, sampler, transforms};
-use super::{Coefficient, Matter, Media, Medium, Passage, Phase};
+use super::{Coefficient, Grid, Matter, Media, Medium, Passage, Phase};
 use crate::color::Rgb;
 use crate::handle::Arena;
 use crate::math::{DVec3, Ray, Transform, Vec3};
@@ -206,16 +206,79 @@ fn a_ramp_and_a_thick_cloud_let_through_what_they_must() {
     for (name, values, depth) in [("a ramp", values, 2.0), ("a thick ramp", thick, 6.0)] {
         let case = Case::new(grey([n, 1, 1], values), placed);
         let ray = Ray::new(Vec3::new(2.0, 20.0, 20.0), -Vec3::X);
-        let (mut transmittance, mut through) = (MeanTest::new(), 0);
+        let (mut transmittance, mut distance, mut through) = (MeanTest::new(), MeanTest::new(), 0);
         let count = 100_000;
         for i in 0..count {
             transmittance.push(f64::from(case.matter.transmittance(&ray, 10.0, &mut sampler(i)).g));
             let passage = case.matter.travel(&ray, 10.0, Rgb::WHITE, &mut sampler(count + i));
             through += u64::from(passage == Passage::Through { weight: Rgb::WHITE });
+            distance.push(if let Passage::Collision { t, .. } = passage { f64::from(t) - 1.0 } else { 0.0 });
         }
         judge(name, &transmittance.against(libm::exp(-depth)));
         judge(name, &binomial_test(through, count, libm::exp(-depth)));
+        // ∫ t σ T dt by parts, from the high end of the ramp.
+        let transmittance = |t: f64| libm::exp(-depth * t * (2.0 - t));
+        let area = integrate(transmittance, &[0.0, 1.0], Tolerance::relative(1e-6)).value;
+        judge(name, &distance.within(area - libm::exp(-depth), 1e-4));
     }
+}
+
+#[test]
+fn a_half_space_reflects_as_chandrasekhar_says() {
+    let matter = uniform(Rgb::splat(0.7));
+    let albedo = Rgb::new(0.5, 0.9, 0.0);
+    let mut reflected = [MeanTest::new(); 2];
+    for i in 0..30_000 {
+        let mut sampler = sampler(i);
+        let (mut ray, mut power) = (Ray::new(Vec3::ZERO, -Vec3::Z), Rgb::WHITE);
+        // What is left after this many is below 1e-6.
+        for _ in 0..140 {
+            let out = if ray.direction.z > 0.0 { -ray.origin.z / ray.direction.z } else { f32::INFINITY };
+            let Passage::Collision { t, weight } = matter.travel(&ray, out, power, &mut sampler) else {
+                for (mean, power) in reflected.iter_mut().zip(power.to_array()) {
+                    mean.push(f64::from(power));
+                }
+                break;
+            };
+            power = power * weight * albedo;
+            let scattered = matter.phase().sample(-ray.direction, sampler.next_2d());
+            ray = Ray::new(ray.at(t), scattered.wi);
+        }
+        for mean in reflected.iter_mut().filter(|mean| mean.count() <= i) {
+            mean.push(0.0);
+        }
+    }
+    for (mean, (h, albedo)) in reflected.iter().zip([(1.2513, 0.5f64), (1.8501, 0.9)]) {
+        let expected = 1.0 - h * (1.0 - albedo).sqrt();
+        judge("a half-space", &mean.within(expected, 5e-4));
+    }
+}
+
+#[test]
+fn scaled_by_a_power_of_two_light_goes_the_same_way() {
+    let factor = 4096.0;
+    let grid = patchy(8, [6, 3, 9], 0.6);
+    let thin = Grid { values: grid.values.scaled(1.0 / factor), ..grid.clone() };
+    let place = transforms()[2];
+    let small = Case::new(grid, place);
+    let large = Case::new(thin, place.then(Transform::scale(DVec3::splat(f64::from(factor)))));
+    let ray = small.ray(Vec3::splat(0.4), Vec3::new(1.0, 0.2, -0.3), 2.0);
+    let far = Ray::new(ray.origin * factor, ray.direction);
+    let (mut collisions, carried) = (0, Rgb::new(1.0, 2.0, 0.5));
+    for i in 0..200 {
+        let mut passage = small.matter.travel(&ray, 4.0, carried, &mut sampler(i));
+        if let Passage::Collision { t, .. } = &mut passage {
+            *t *= factor;
+            collisions += 1;
+        }
+        assert_eq!(large.matter.travel(&far, 4.0 * factor, carried, &mut sampler(i)), passage);
+        let transmittance =
+            |case: &Case, ray: &Ray, t: f32| case.matter.transmittance(ray, t, &mut sampler(i));
+        assert_eq!(transmittance(&small, &ray, 4.0), transmittance(&large, &far, 4.0 * factor));
+    }
+    assert!((20..180).contains(&collisions));
+    let (near, far) = (small.matter.profile(&ray, 4.0), large.matter.profile(&far, 4.0 * factor));
+    assert_eq!(near.transmittance(2.1), far.transmittance(2.1 * factor));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Participating media. A [`Medium`] is what the scene says; [`Matter`] is what the world makes of it:
+//! Participating media. A [`Medium`] is what the scene says; `Matter` is what the world makes of it:
 //! distances to collisions, transmittance, and how light is scattered.
 
 mod cells;
