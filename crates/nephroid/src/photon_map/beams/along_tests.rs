@@ -1,11 +1,8 @@
 //! `along` against every beam looked at in double precision.
 
-use nephroid_testkit::{ALPHA, z_test};
-
 use super::testing::{Pair, Visit, beam, direction, map, visits};
-use super::{Beam, BeamMap, BeamWidth, Beams};
+use super::{Beam, BeamMap};
 use crate::bvh::Simd;
-use crate::color::Rgb;
 use crate::math::{Ray, Vec3};
 use crate::photon_map::Kernel;
 use crate::photon_map::testing::Rng;

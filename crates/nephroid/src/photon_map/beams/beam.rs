@@ -83,7 +83,7 @@ impl Beams {
     pub(super) fn into_shares(self) -> Vec<Beam> {
         let share = (1.0 / self.emitted.max(1) as f64) as f32;
         let mut beams = self.beams;
-        beams.iter_mut().for_each(|beam| beam.power = beam.power * share);
+        beams.iter_mut().for_each(|beam| beam.power *= share);
         beams.shrink_to_fit();
         beams
     }

@@ -4,7 +4,7 @@ use super::testing::{beam, direction, map, total, visits};
 use super::{Beam, BeamMap, BeamWidth, Beams};
 use crate::bvh::Simd;
 use crate::color::Rgb;
-use crate::math::{Ray, Vec2, Vec3, warp};
+use crate::math::{Frame, Ray, Vec2, Vec3, warp};
 use crate::photon_map::Kernel;
 use crate::photon_map::testing::Rng;
 
@@ -14,10 +14,10 @@ fn across_a_box(n: usize, rng: &mut Rng) -> Vec<Beam> {
         let axis = i % 3;
         let mut origin = rng.point() * 2.0 - 1.0;
         let mut inward = Vec3::ZERO;
-        origin[axis] = if i % 2 == 0 { -1.0 } else { 1.0 };
+        origin[axis] = if i.is_multiple_of(2) { -1.0 } else { 1.0 };
         inward[axis] = -origin[axis];
         let d = warp::square_to_cosine_hemisphere(Vec2::new(rng.next(), rng.next()));
-        let d = crate::math::Frame::from_normal(inward).to_world(d).normalize();
+        let d = Frame::from_normal(inward).to_world(d).normalize();
         let to_wall = |axis: usize| (d[axis].signum() - origin[axis]) / d[axis];
         beam(i, origin, d, to_wall(0).min(to_wall(1)).min(to_wall(2)).max(1e-3))
     };
@@ -80,7 +80,7 @@ fn nothing_is_found_where_nothing_can_be() {
 #[test]
 fn media_do_not_mix() {
     let mut rng = Rng::new(1);
-    let beams: Vec<_> = across_a_box(500, &mut rng).into_iter().collect();
+    let beams = across_a_box(500, &mut rng);
     let medium = |i: usize| (i % 3) as u16;
     let mixed = beams.iter().enumerate().map(|(i, b)| Beam { medium: medium(i), ..*b }).collect();
     let (mixed, alone) = (map(mixed, 0.1), map(beams, 0.1));
@@ -103,7 +103,7 @@ fn memory_is_at_most_three_hundred_bytes_a_beam() {
     let across = across_a_box(20_000, &mut rng);
     let short: Vec<_> = across.iter().map(|b| Beam { length: b.length * 0.01, ..*b }).collect();
     let uneven: Vec<_> =
-        across.iter().enumerate().map(|(i, b)| if i % 10 == 0 { *b } else { short[i] }).collect();
+        across.iter().enumerate().map(|(i, b)| if i.is_multiple_of(10) { *b } else { short[i] }).collect();
     let bundle: Vec<_> =
         across.iter().map(|b| Beam { direction: Vec3::ONE.normalize(), length: 2.0, ..*b }).collect();
     for (name, beams) in [("across", across), ("short", short), ("uneven", uneven), ("bundle", bundle)] {
@@ -120,7 +120,7 @@ fn memory_is_at_most_three_hundred_bytes_a_beam() {
 fn lines(n: usize, rng: &mut Rng) -> Vec<Ray> {
     let mut out = Vec::new();
     while out.len() < n {
-        let frame = crate::math::Frame::from_normal(direction(rng));
+        let frame = Frame::from_normal(direction(rng));
         let across = Vec3::new(rng.next() - 0.5, rng.next() - 0.5, 0.0) * 4.0;
         let ray = Ray::new(frame.to_world(across - Vec3::Z * 3.0), frame.n);
         let meets = {

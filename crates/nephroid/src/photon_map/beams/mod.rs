@@ -31,8 +31,8 @@
 //! # Nearly parallel beams
 //!
 //! The weight grows beyond bounds as sin θ → 0. Its mean is right, and for beams of all directions its
-//! variance is finite (∫K² du ∫ sin⁻¹θ dω, that is π/2 times what beams at right angles have), but the
-//! third moment is not: weights beyond w come in proportion to w⁻³. And a ray exactly along a bundle,
+//! variance is finite: the mean of 1/sin θ over the sphere makes it π/2 times that of beams at right angles.
+//! But weights beyond w come in proportion to w⁻³, and the third moment is infinite: such are fireflies. And a ray exactly along a bundle,
 //! as a parallel projection along a parallel light has it, would find nothing. So pairs with sin θ < τ are
 //! estimated with a kernel of *two* dimensions, Beam × Beam 2D: the beam is a cylinder with the density
 //! K₂(distance from its axis), whose integral over the stretch of the ray inside is estimated with one

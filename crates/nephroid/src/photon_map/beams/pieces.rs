@@ -4,8 +4,10 @@ use super::Beam;
 use crate::bvh::Boxes;
 use crate::math::{Bounds, Vec3, gamma};
 
-/// How many pieces a beam is cut into on the average, at most. More make the boxes smaller, but not the
-/// boxes of eight pieces together, and each takes some 60 bytes.
+/// How many pieces a beam is cut into on the average, or some more where lengths differ much. Each takes some 60
+/// bytes. With 20 000 beams across a box a ray comes to 677, 311, 195 leaves for 1, 2.6 and 5 of them, of 41 beams
+/// that count; the boxes of eight pieces together shrink more slowly than those of each, and rays gain
+/// nothing beyond 2.6 while building takes three times as long.
 const MEAN_PIECES: f64 = 2.6;
 
 /// A part of a beam: the distances s from its origin with `start` ≤ s < `end`.
