@@ -7,6 +7,7 @@ use nephroid::color::Rgb;
 use nephroid::film::Filter;
 use nephroid::material::Material;
 use nephroid::math::Vec3;
+use nephroid::medium::{Coefficient, Medium};
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::Texture;
@@ -43,6 +44,10 @@ pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     about["bounds"] = bounds(&world);
     about["materials"] = counted(world.scene().materials.iter().map(material));
     about["textures"] = counted(world.scene().textures.list.iter().map(texture));
+    if !world.scene().media.list.is_empty() {
+        about["media"] = counted(world.scene().media.list.iter().map(medium));
+        about["cells of grids"] = json!(cells(world.scene()));
+    }
     about["lights"] = lights(&world);
     about["integrator of the scene"] = request(&file.integrator);
     about["integrator used"] = method::describe(&method);
@@ -141,6 +146,18 @@ fn texture(texture: &Texture) -> &'static str {
         Texture::Bitmap(_) => "bitmap",
         Texture::Checkerboard(_) => "checkerboard",
     }
+}
+
+fn medium(medium: &Medium) -> &'static str {
+    match medium.sigma_t {
+        Coefficient::Constant(_) => "homogeneous",
+        Coefficient::Grid { .. } => "heterogeneous",
+    }
+}
+
+/// How many cells the grids of all media have.
+fn cells(scene: &Scene) -> u64 {
+    scene.media.grids.iter().map(|grid| grid.size.iter().map(|side| u64::from(*side)).product::<u64>()).sum()
 }
 
 fn lights(world: &World) -> Value {

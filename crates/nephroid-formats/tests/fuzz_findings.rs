@@ -6,6 +6,7 @@ use std::path::Path;
 use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
 use nephroid_formats::mitsuba::{Options, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
+use nephroid_formats::volume::read_vol;
 
 /// Names and contents of the seeds of a target.
 fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
@@ -28,6 +29,13 @@ fn seeds_of_meshes_can_be_read() {
 }
 
 #[test]
+fn seeds_of_volumes_can_be_read() {
+    for (name, bytes) in seeds("vol") {
+        read_vol(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+#[test]
 fn seeds_of_scenes_can_be_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
     let file = |path: &str| std::fs::read(folder.join(path)).unwrap();
@@ -35,6 +43,7 @@ fn seeds_of_scenes_can_be_read() {
         .with("m.obj", file("obj/quad.obj"))
         .with("m.ply", file("ply/ascii.ply"))
         .with("i.png", file("two_pixels.png"))
+        .with("v.vol", file("vol/floats.vol"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
         .with("p.xml", "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"p\"/></scene>");
     let options = Options { defines: Vec::new(), lenient: true };

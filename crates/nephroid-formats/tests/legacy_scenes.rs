@@ -4,7 +4,7 @@ use nephroid::camera::{FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::light::LightKind;
 use nephroid::material::{Material, Metal};
-use nephroid::math::Vec3;
+use nephroid::math::{Vec2, Vec3};
 use nephroid::medium::Coefficient;
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
@@ -90,6 +90,23 @@ fn spectra_are_rgb() {
     };
     assert_eq!(intensity(0), Rgb::splat(16.0));
     assert!((intensity(1).r - 5.178).abs() < 1e-3);
+}
+
+#[test]
+fn textures_are_scaled_and_moved() {
+    let file = read(
+        r#"<texture type="checkerboard"><float name="uscale" value="10"/><float name="voffset" value="0.5"/></texture>
+        <texture type="checkerboard"/>"#,
+    );
+    assert_eq!(file.warnings, []);
+    let to_uv = |i: usize| {
+        let boards = file.scene.textures.list.iter().filter_map(|texture| match texture {
+            Texture::Checkerboard(board) => Some(board.to_uv),
+            _ => None,
+        });
+        boards.collect::<Vec<_>>()[i].transform_point2(Vec2::new(0.5, 0.25))
+    };
+    assert_eq!([to_uv(0), to_uv(1)], [Vec2::new(5.0, 0.75), Vec2::new(0.5, 0.25)]);
 }
 
 #[test]

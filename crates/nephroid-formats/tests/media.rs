@@ -5,6 +5,7 @@ use nephroid::material::Material;
 use nephroid::math::{Transform, Vec3};
 use nephroid::medium::{Coefficient, GridValues, Medium, Phase};
 use nephroid::scene::Scene;
+use nephroid_formats::diagnostic::Location;
 use nephroid_formats::mitsuba::{Options, SceneFile, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
 
@@ -159,8 +160,8 @@ fn a_grid_is_stored_once() {
     let scene = &file.scene;
     assert_eq!((scene.media.list.len(), scene.media.grids.len()), (2, 1));
     assert_eq!(scene.media.grids.iter().next().expect("a grid").name, "grey.vol");
-    assert_eq!(file.origins.media.iter().map(|at| at.line()).collect::<Vec<_>>(), [3, 4]);
-    assert_eq!(file.origins.grids.iter().map(|at| at.text()).collect::<Vec<_>>(), ["grey.vol"]);
+    assert_eq!(file.origins.media.iter().map(Location::line).collect::<Vec<_>>(), [3, 4]);
+    assert_eq!(file.origins.grids.iter().map(Location::text).collect::<Vec<_>>(), ["grey.vol"]);
 }
 
 #[test]

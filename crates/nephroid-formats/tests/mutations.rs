@@ -1,8 +1,10 @@
 //! Random damage to good files must never end in a panic.
 
+use nephroid::medium::GridValues;
 use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
 use nephroid_formats::mitsuba::{Options, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
+use nephroid_formats::volume::read_vol;
 use proptest::prelude::*;
 
 const SCENE: &str = r##"<scene version="3.0.0">
@@ -25,6 +27,27 @@ const SCENE: &str = r##"<scene version="3.0.0">
 <emitter type="directional"><vector name="direction" value="0 -1 0"/></emitter>
 </scene>"##;
 
+const FOG: &str = r##"<scene version="3.0.0"><sensor type="perspective"><ref id="fog"/></sensor>
+<volume type="gridvolume" id="grid"><string name="filename" value="v.vol"/><boolean name="use_grid_bbox" value="true"/>
+<string name="wrap_mode" value="clamp"/><transform name="to_world"><scale value="2"/></transform></volume>
+<medium type="homogeneous" id="fog"><rgb name="sigma_s" value="1, 2, 3"/><float name="sigma_a" value="0.5"/>
+<float name="scale" value="2"/><phase type="hg"><float name="g" value="0.5"/></phase></medium>
+<medium type="heterogeneous" id="smoke"><ref name="sigma_t" id="grid"/><rgb name="ambient" value="0.1"/>
+<volume name="albedo" type="constvolume"><rgb name="value" value="0.9"/></volume><phase type="rayleigh"/></medium>
+<shape type="cube"><bsdf type="null"/><ref name="interior" id="smoke"/><ref name="exterior" id="fog"/>
+<integer name="priority" value="1"/></shape>
+<shape type="disk"><emitter type="area"><ref id="fog"/></emitter></shape>
+<emitter type="point"><ref id="fog"/></emitter></scene>"##;
+
+const LEGACY: &str = r##"<scene version="0.5.0"><integrator type="volpath"><integer name="maxDepth" value="-1"/>
+<integer name="version" value="6"/></integrator><sensor type="perspective"><string name="fovAxis" value="x"/>
+<transform name="toWorld"><lookAt origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
+<medium type="heterogeneous" id="smoke"><volume name="density" type="gridvolume">
+<string name="filename" value="v.vol"/></volume><float name="stepSize" value="0.1"/></medium>
+<shape type="sphere"><ref name="interior" id="smoke"/></shape>
+<bsdf type="diffuse"><texture name="reflectance" type="checkerboard"><float name="uscale" value="3"/></texture></bsdf>
+<emitter type="point"><spectrum name="intensity" value="1, 2, 3"/></emitter></scene>"##;
+
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0.25\nvn 0 0 1\nf 1/1/1 2//1 -2/1 4\n";
 
 const PLY: &str = "ply\nformat ascii 1.0\ncomment x\nelement vertex 3\nproperty float x\nproperty float y\n\
@@ -39,6 +62,15 @@ fn binary_ply() -> Vec<u8> {
         out.extend(v.to_le_bytes());
     }
     out.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    out
+}
+
+/// Two cells of three values each.
+fn vol() -> Vec<u8> {
+    let mut out = b"VOL\x03".to_vec();
+    out.extend([1i32, 2, 1, 1, 3].iter().flat_map(|v| v.to_le_bytes()));
+    out.extend([0.0f32, 0.0, 0.0, 1.0, 2.0, 3.0].iter().flat_map(|v| v.to_le_bytes()));
+    out.extend([0.5f32; 6].iter().flat_map(|v| v.to_le_bytes()));
     out
 }
 
@@ -72,6 +104,8 @@ fn damage() -> impl Strategy<Value = Damage> {
         "<ref id=\"red\"/>",
         "<ref id=\"floor\"/>",
         "<include filename=\"s.xml\"/>",
+        "<ref name=\"interior\" id=\"fog\"/>",
+        "<ref id=\"grid\"/>",
         "#",
         ":",
         "4294967295 ",
@@ -131,6 +165,37 @@ proptest! {
     }
 
     #[test]
+    fn damaged_media(
+        damages in prop::collection::vec(damage(), 1..6),
+        file_damages in prop::collection::vec(damage(), 0..2),
+        legacy: bool,
+        lenient: bool,
+    ) {
+        let scene = if legacy { LEGACY } else { FOG };
+        let text = String::from_utf8_lossy(&damaged(scene.as_bytes(), &damages)).into_owned();
+        let files = MemoryFiles::default().with("v.vol", damaged(&vol(), &file_damages));
+        match read_scene_str("s.xml", &text, &files, &Options { defines: Vec::new(), lenient }) {
+            Ok(file) => {
+                let media = &file.scene.media;
+                prop_assert_eq!(media.list.len(), file.origins.media.len());
+                prop_assert_eq!(media.grids.len(), file.origins.grids.len());
+            }
+            Err(diagnostics) => prop_assert!(!diagnostics.render(true).is_empty()),
+        }
+    }
+
+    #[test]
+    fn damaged_volumes(damages in prop::collection::vec(damage(), 1..5)) {
+        if let Ok(file) = read_vol(&damaged(&vol(), &damages)) {
+            let cells = file.size.iter().product::<u32>() as usize;
+            match file.values {
+                GridValues::Grey(values) => prop_assert_eq!(values.len(), cells),
+                GridValues::Rgb(values) => prop_assert_eq!(values.len(), cells),
+            }
+        }
+    }
+
+    #[test]
     fn damaged_meshes(damages in prop::collection::vec(damage(), 1..5), face_normals: bool) {
         let options = MeshOptions { face_normals, flip_tex_coords: true };
         for mesh in [
@@ -153,6 +218,11 @@ fn undamaged_files_can_be_read() {
         .with("m.obj", OBJ)
         .with("part.xml", "<scene version=\"2.0.0\"><emitter type=\"constant\"/></scene>");
     read_scene_str("s.xml", SCENE, &files, &Options::default()).unwrap();
+    for scene in [FOG, LEGACY] {
+        let files = MemoryFiles::default().with("v.vol", vol());
+        read_scene_str("s.xml", scene, &files, &Options::default()).unwrap();
+    }
+    read_vol(&vol()).unwrap();
     read_ply(PLY.as_bytes(), MeshOptions::default()).unwrap();
     read_ply(&binary_ply(), MeshOptions::default()).unwrap();
 }

@@ -1,7 +1,7 @@
 //! Any bytes as a scene file: messages that can be shown, or a scene that `World::new` takes or refuses.
 //!
-//! The files that a scene can name are in memory: a mesh of each kind, a picture, a spectrum, an included file,
-//! and the scene itself.
+//! The files that a scene can name are in memory: a mesh of each kind, a picture, a volume, a spectrum, an included
+//! file, and the scene itself.
 #![no_main]
 
 use std::path::Path;
@@ -17,6 +17,7 @@ static FILES: LazyLock<MemoryFiles> = LazyLock::new(|| {
         .with("m.obj", *include_bytes!("../seeds/obj/quad.obj"))
         .with("m.ply", *include_bytes!("../seeds/ply/ascii.ply"))
         .with("i.png", *include_bytes!("../seeds/two_pixels.png"))
+        .with("v.vol", *include_bytes!("../seeds/vol/floats.vol"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
         .with("p.xml", "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"p\"/></scene>")
 });
@@ -30,6 +31,8 @@ fuzz_target!(|bytes: &[u8]| {
                 assert_eq!(file.origins.shapes.len(), file.scene.shapes.len());
                 assert_eq!(file.origins.lights.len(), file.scene.lights.len());
                 assert_eq!(file.origins.materials.len(), file.scene.materials.len());
+                assert_eq!(file.origins.media.len(), file.scene.media.list.len());
+                assert_eq!(file.origins.grids.len(), file.scene.media.grids.len());
                 if let Err(errors) = World::new(file.scene) {
                     assert!(errors.0.iter().all(|error| !error.message.is_empty()));
                 }

@@ -79,6 +79,9 @@ pub(super) fn upgrade(element: &mut Element, count: &mut usize) {
             add(element, property, &[("name", name), ("value", value)], count);
         }
     }
+    if element.tag == "texture" {
+        texture_transform(element, count);
+    }
     if element.tag == "shape" && is_mere_boundary(element) {
         add(element, "bsdf", &[("type", "null")], count);
     }
@@ -131,7 +134,37 @@ fn is_mere_boundary(shape: &Element) -> bool {
     shape.children.iter().any(is_side) && !shape.children.iter().any(is_more)
 }
 
-fn add(to: &mut Element, tag: &str, attributes: &[(&str, &str)], count: &mut usize) {
+/// A texture's four numbers become the transform that they are.
+fn texture_transform(texture: &mut Element, count: &mut usize) {
+    let value = |name: &str| {
+        let of = texture.children.iter().find(|child| child.value_of("name") == Some(name))?;
+        of.value_of("value").map(str::to_owned)
+    };
+    let numbers = ["uscale", "vscale", "uoffset", "voffset"].map(value);
+    if numbers.iter().all(Option::is_none) || names(texture, "to_uv") {
+        return;
+    }
+    let is_number = |name: Option<&str>| matches!(name, Some("uscale" | "vscale" | "uoffset" | "voffset"));
+    texture.children.retain(|child| !is_number(child.value_of("name")));
+    let [uscale, vscale, uoffset, voffset] = &numbers;
+    let step = |x: &Option<String>, y: &Option<String>| -> Vec<(&str, String)> {
+        [("x", x), ("y", y)].into_iter().filter_map(|(axis, v)| Some((axis, v.clone()?))).collect()
+    };
+    let [scale, translate] = [step(uscale, vscale), step(uoffset, voffset)];
+    let transform = add(texture, "transform", &[("name", "to_uv")], count);
+    for (tag, attributes) in [("scale", scale), ("translate", translate)] {
+        let attributes: Vec<_> = attributes.iter().map(|(axis, value)| (*axis, value.as_str())).collect();
+        add(transform, tag, &attributes, count);
+    }
+}
+
+/// Puts an element into another, where messages will say it is, and returns it.
+fn add<'e>(
+    to: &'e mut Element,
+    tag: &str,
+    attributes: &[(&str, &str)],
+    count: &mut usize,
+) -> &'e mut Element {
     *count += 1;
     let location = &to.location;
     let attribute = |(name, value): &(&str, &str)| Attribute {
@@ -148,6 +181,8 @@ fn add(to: &mut Element, tag: &str, attributes: &[(&str, &str)], count: &mut usi
         is_legacy: true,
     };
     to.children.push(added);
+    let last = to.children.len() - 1;
+    &mut to.children[last]
 }
 
 #[cfg(test)]
