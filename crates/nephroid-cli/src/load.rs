@@ -111,6 +111,7 @@ fn origin<'o>(subject: Subject, origins: &'o Origins, meshes: &[Option<usize>]) 
         }
         Subject::Texture(i) => origins.textures.get(i),
         Subject::Image(i) => origins.images.get(i),
-        Subject::Medium(_) | Subject::Grid(_) => None,
+        Subject::Medium(i) => origins.media.get(i),
+        Subject::Grid(i) => origins.grids.get(i),
     }
 }

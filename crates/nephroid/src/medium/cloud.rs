@@ -32,11 +32,6 @@ impl Cloud {
         if self.placed.contains(cells) { self.placed.grid.eval_in_cells(cells) } else { Rgb::BLACK }
     }
 
-    /// The largest value of each channel.
-    pub fn max(&self) -> Rgb {
-        self.placed.grid.values.iter().fold(Rgb::BLACK, |a, b| a.zip(b, f32::max))
-    }
-
     /// Where a ray leaves the grid; 0 if it never meets it.
     pub fn exit(&self, ray: &Ray) -> f32 {
         self.placed.crossing(ray, f32::INFINITY).map_or(0.0, |crossing| crossing.start + crossing.length)

@@ -17,7 +17,6 @@ pub(crate) struct Matter {
     emission: Field,
     emits: bool,
     ambient: Rgb,
-    max_extinction: Rgb,
 }
 
 #[derive(Clone, Debug)]
@@ -43,10 +42,6 @@ impl Matter {
             Field::Constant(sigma_t) => Extinction::Uniform(sigma_t),
             Field::Placed(placed) => Extinction::Cloud(Box::new(Cloud::new(placed))),
         };
-        let max_extinction = match &extinction {
-            Extinction::Uniform(sigma_t) => *sigma_t,
-            Extinction::Cloud(cloud) => cloud.max(),
-        };
         let emission = Field::new(&medium.emission, grids);
         Self {
             phase: medium.phase,
@@ -55,7 +50,6 @@ impl Matter {
             emits: !emission.is_black(),
             emission,
             ambient: medium.ambient,
-            max_extinction,
         }
     }
 
@@ -107,11 +101,6 @@ impl Matter {
             Extinction::Uniform(sigma_t) => Some(*sigma_t),
             Extinction::Cloud(_) => None,
         }
-    }
-
-    /// What the extinction nowhere exceeds, in 1/m.
-    pub fn max_extinction(&self) -> Rgb {
-        self.max_extinction
     }
 
     /// Whether it gives off light.
