@@ -21,6 +21,10 @@ mod radii;
 #[cfg(test)]
 mod along_tests;
 #[cfg(test)]
+mod at_tests;
+#[cfg(test)]
+mod map_tests;
+#[cfg(test)]
 mod testing;
 
 pub use at::VolumeQuery;
