@@ -114,4 +114,12 @@ impl Blocks {
         let block = &self.blocks[number];
         [L::load(&block.x), L::load(&block.y), L::load(&block.z)]
     }
+
+    /// Has the coordinates of a block brought from memory.
+    #[inline(always)]
+    pub fn prefetch<L: Lanes>(&self, number: usize) {
+        if let Some(block) = self.blocks.get(number) {
+            L::prefetch(block);
+        }
+    }
 }

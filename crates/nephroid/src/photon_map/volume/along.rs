@@ -11,7 +11,7 @@ use crate::photon_map::{Kernel, PhotonIndex};
 
 /// Photons found at a time: what is done with them is then no part of the search, which is compiled for
 /// wider instructions than its caller.
-const BATCH: usize = 128;
+const BATCH: usize = 256;
 
 /// Levels that a search can go down: eight to the power of as many are more blocks than there are.
 const MAX_HEIGHT: usize = 11;
@@ -111,16 +111,16 @@ impl Work for Next<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> usize {
         let Self { search, batch } = self;
-        let Cloud { ref balls, ref index, ref radii, .. } = *search.cloud;
+        let Cloud { ref balls, ref index, ref radii, ref payloads, .. } = *search.cloud;
         let beam = Beam::<L>::new(search.ray.origin, search.ray.direction, search.ray.t_max);
         let top = balls.height() - 1;
         if search.fresh {
             search.fresh = false;
-            search.nodes[top] = (0, beam.meet(balls.node(top, 0)));
+            search.nodes[top % MAX_HEIGHT] = (0, search.cloud.enter(&beam, top, 0));
         }
         let (mut level, mut len) = (search.level, 0);
         loop {
-            let (number, children) = search.nodes[level % MAX_HEIGHT];
+            let (number, mut children) = search.nodes[level % MAX_HEIGHT];
             if children == 0 {
                 if level == top {
                     break;
@@ -128,31 +128,57 @@ impl Work for Next<'_, '_> {
                 level += 1;
                 continue;
             }
-            if len + LANES > BATCH {
-                break;
-            }
-            search.nodes[level % MAX_HEIGHT].1 = children & (children - 1);
-            let child = number as usize * LANES + children.trailing_zeros() as usize;
             if level > 0 {
+                search.nodes[level % MAX_HEIGHT].1 = children & (children - 1);
+                let child = number as usize * LANES + children.trailing_zeros() as usize;
                 level -= 1;
-                search.nodes[level % MAX_HEIGHT] = (child as u32, beam.meet(balls.node(level, child)));
+                search.nodes[level % MAX_HEIGHT] = (child as u32, search.cloud.enter(&beam, level, child));
                 continue;
             }
-            let (t, dist_sq) = beam.project(index.blocks.coordinates(child));
-            let radius = radii.of_block(child);
-            let mut mask = beam.passes(t, dist_sq, L::splat(radius * radius));
-            // Beyond the last photon of all lie none.
-            mask &= u32::MAX >> (32 - (index.len() - child * LANES).min(LANES));
-            let (t, dist_sq) = (t.store(), dist_sq.store());
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize % LANES;
-                mask &= mask - 1;
-                let place = (child * LANES + lane) as u32;
-                batch[len % BATCH] = Passed { place, t: t[lane], dist_sq: dist_sq[lane] };
-                len += 1;
+            if len + LANES * LANES > BATCH {
+                break;
+            }
+            search.nodes[0].1 = 0;
+            while children != 0 {
+                let block = number as usize * LANES + children.trailing_zeros() as usize;
+                children &= children - 1;
+                let (t, dist_sq) = beam.project(index.blocks.coordinates(block));
+                let radius = radii.of_block(block);
+                let mut mask = beam.passes(t, dist_sq, L::splat(radius * radius));
+                // Beyond the last photon of all lie none.
+                mask &= u32::MAX >> (32 - (index.len() - block * LANES).min(LANES));
+                let (t, dist_sq) = (t.store(), dist_sq.store());
+                while mask != 0 {
+                    let lane = mask.trailing_zeros() as usize % LANES;
+                    mask &= mask - 1;
+                    let place = block * LANES + lane;
+                    L::prefetch(&payloads[place]);
+                    batch[len % BATCH] = Passed { place: place as u32, t: t[lane], dist_sq: dist_sq[lane] };
+                    len += 1;
+                }
             }
         }
         search.level = level;
         len
+    }
+}
+
+impl Cloud {
+    /// Which children of a node a ray meets. All of them are asked of memory at once: where there are a
+    /// million photons, waiting for one after the other took a third of the time.
+    #[inline(always)]
+    fn enter<L: Lanes>(&self, beam: &Beam<L>, level: usize, number: usize) -> u32 {
+        let children = beam.meet(self.balls.node(level, number));
+        let mut left = children;
+        while left != 0 {
+            let child = number * LANES + left.trailing_zeros() as usize;
+            left &= left - 1;
+            if level > 0 {
+                self.balls.prefetch::<L>(level - 1, child);
+            } else {
+                self.index.blocks.prefetch::<L>(child);
+            }
+        }
+        children
     }
 }

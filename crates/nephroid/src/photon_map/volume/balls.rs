@@ -26,7 +26,7 @@ pub(super) struct Balls {
     levels: Vec<Vec<Node>>,
 }
 
-/// Eight balls. A lane that is not used has a reach which is not a number, and no ray meets it.
+/// Eight balls. A lane that is not used reaches to -∞, so it lies behind every ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub(super) struct Node {
@@ -82,6 +82,14 @@ impl Balls {
     pub fn node(&self, level: usize, number: usize) -> &Node {
         &self.levels[level][number]
     }
+
+    /// Has a node brought from memory.
+    #[inline(always)]
+    pub fn prefetch<L: Lanes>(&self, level: usize, number: usize) {
+        if let Some(node) = self.levels[level].get(number) {
+            L::prefetch(node);
+        }
+    }
 }
 
 impl Ball {
@@ -109,7 +117,7 @@ impl Ball {
 impl Node {
     /// Of at most eight balls.
     fn new(balls: &[Ball]) -> Self {
-        let mut node = Self { center: [[0.0; LANES]; 3], reach: [f32::NAN; LANES] };
+        let mut node = Self { center: [[0.0; LANES]; 3], reach: [f32::NEG_INFINITY; LANES] };
         for (lane, ball) in balls.iter().enumerate().take(LANES) {
             for axis in 0..3 {
                 node.center[axis][lane] = ball.center[axis];

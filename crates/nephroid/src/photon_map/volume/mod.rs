@@ -7,7 +7,7 @@
 //!
 //! Each medium has a [`Cloud`](cloud::Cloud) of its own, so photons of others cost nothing and cannot count. A
 //! cloud is a tree of grids, which finds the nearest and arranges the photons; balls around eight
-//! photons, eight such and so on, in the same order; and a radius for each eight.
+//! photons, eight such and so on, in the same order; and a radius for each 32.
 
 mod along;
 mod at;
@@ -20,6 +20,10 @@ mod radii;
 
 #[cfg(test)]
 mod along_tests;
+#[cfg(test)]
+mod at_tests;
+#[cfg(test)]
+mod map_tests;
 #[cfg(test)]
 mod testing;
 

@@ -46,3 +46,11 @@ pub fn clouds() -> Vec<(&'static str, Vec<Vec3>)> {
         ("huge", random(1000).into_iter().map(|p| p * 1e10).collect()),
     ]
 }
+
+/// The mean of independent values, and its standard deviation.
+pub fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
