@@ -64,7 +64,7 @@ fn values_out_of_range_are_usage_errors() {
         &["--time", "nan"],
         &["--exposure", "inf"],
         &["--tonemap", "filmic"],
-        &["--integrator", "volpath"],
+        &["--integrator", "bdpt"],
         &["--max-depth", "-2"],
     ] {
         dir.render("cornell", args).ends_with(2).says(args[1]);
