@@ -4,7 +4,7 @@
 
 use super::{Components, Estimator, LightPart, Met, Probe};
 use crate::color::Rgb;
-use crate::material::Transport;
+use crate::material::{Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::medium::{Passage, PhaseSample};
 use crate::photon_map::NearestList;
@@ -159,7 +159,7 @@ fn radiance<P: Probe>(
         };
         inside = world.cross(inside, &hit, ray.direction, scattered.wi);
         ray = leave(&hit.point, scattered.wi);
-        depth += 1;
+        depth += segments_by(wo, scattered.wi);
     }
     out
 }

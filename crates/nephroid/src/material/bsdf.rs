@@ -39,6 +39,12 @@ pub struct BsdfSample {
     pub transmitted: bool,
 }
 
+/// Segments that a path has more behind a surface: none where it goes straight on, as through thin glass. Mitsuba's
+/// `volpath` counts so.
+pub(crate) fn segments_by(wo: Vec3, wi: Vec3) -> u32 {
+    u32::from(wi != -wo)
+}
+
 /// How a surface scatters at one point, seen from the side of one `wo`.
 ///
 /// `wo` and `wi` are unit directions in world space that both *leave* the surface: a photon that

@@ -14,6 +14,7 @@ mod phong;
 mod split;
 mod surface;
 
+pub(crate) use bsdf::segments_by;
 pub use bsdf::{Bsdf, BsdfSample, Transport};
 pub use check::check;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric};

@@ -23,6 +23,8 @@ pub enum PhotonKind {
 pub(super) struct History {
     specular: u32,
     other: u32,
+    /// Of the specular ones those that light went straight on at, which make no segment.
+    straight: u32,
     /// Whether the first surface that was not specular was lit by one that was.
     from_caustic: bool,
     /// Whether the last of the others was a collision.
@@ -30,8 +32,9 @@ pub(super) struct History {
 }
 
 impl History {
+    /// Bounces that make a segment.
     pub fn bounces(&self) -> u32 {
-        self.specular + self.other
+        self.specular + self.other - self.straight
     }
 
     /// What a photon is that lands now on a surface that is not specular.
@@ -62,6 +65,12 @@ impl History {
             self.from_medium = false;
             self.other += 1;
         }
+    }
+
+    /// A specular bounce that light goes straight on at.
+    pub fn pass(&mut self) {
+        self.bounce(true);
+        self.straight += 1;
     }
 
     pub fn collide(&mut self) {

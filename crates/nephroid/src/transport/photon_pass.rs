@@ -57,7 +57,7 @@ pub fn photon_pass(
 ) -> Option<PhotonPass> {
     let record = |(): &mut (), _, event| match event {
         Event::Surface(photon) => Some(photon),
-        Event::Collision(_) | Event::Way(_) => None,
+        Event::Collision(_) | Event::Way(_) | Event::Specular => None,
     };
     let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
     Some(PhotonPass {
@@ -148,7 +148,7 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
     let caustic_job = job(MapKind::Caustic, plan.caustic.paths, caustic_key);
     let ([caustic, afterglow], _) = emit(&caustic_job, |state, path, event, kind| {
         let (lists, next) = match (&event, kind) {
-            (Event::Way(_), _) => ([false, false], Next::Continue),
+            (Event::Way(_) | Event::Specular, _) => ([false, false], Next::Continue),
             // Whatever follows is the global map's.
             (Event::Collision(_), _) => ([false, false], Next::Stop),
             (_, PhotonKind::Caustic) => ([true, false], beyond),

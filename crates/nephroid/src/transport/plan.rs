@@ -174,7 +174,7 @@ fn tried(map: MapKind, targets: &PhotonTargets, event: &Event, kind: PhotonKind)
         MapKind::Caustic => match event {
             Event::Surface(_) => (kind == PhotonKind::Caustic, Next::Stop),
             Event::Collision(_) => (false, Next::Stop),
-            Event::Way(_) => (false, Next::Continue),
+            Event::Way(_) | Event::Specular => (false, Next::Continue),
         },
         MapKind::Volume | MapKind::VolumeCaustic => stored_in_volume(map, targets, event, kind),
     }
@@ -188,7 +188,7 @@ pub(super) fn stored_in_volume(
     kind: PhotonKind,
 ) -> (bool, Next) {
     let fits = match event {
-        Event::Surface(_) => false,
+        Event::Surface(_) | Event::Specular => false,
         Event::Collision(_) => targets.volume_kind == VolumeKind::Points,
         Event::Way(_) => targets.volume_kind == VolumeKind::Beams,
     };
@@ -203,6 +203,7 @@ pub(super) fn stored_in_volume(
         // Whatever follows a surface that is not specular, or a collision, is no caustic.
         (Event::Surface(_), _) => (false, Next::Stop),
         (Event::Collision(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
+        (Event::Specular, _) => (false, Next::Continue),
         (Event::Way(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Continue),
     }
 }

@@ -6,7 +6,7 @@ use super::roulette::survival;
 use super::start::{Start, start};
 use crate::color::Rgb;
 use crate::light::SphereSampling;
-use crate::material::Transport;
+use crate::material::{Transport, segments_by};
 use crate::math::Ray;
 use crate::medium::{Matter, Passage};
 use crate::photon_map::{Beam, Photon, VolumePhoton};
@@ -89,8 +89,10 @@ pub(super) enum Event {
     Surface(Photon),
     /// The power that is scattered at a collision.
     Collision(VolumePhoton),
-    /// The way through a medium that begins.
+    /// A stretch of the way through a medium.
     Way(Beam),
+    /// A bounce at a specular surface.
+    Specular,
 }
 
 /// A photon on its way.
@@ -246,7 +248,14 @@ fn step(
     if !walker.survives(scattered, u_survive) {
         return Next::Stop;
     }
-    walker.history.bounce(sample.dirac);
+    if sample.dirac {
+        visit(Event::Specular, walker.history.kind());
+    }
+    if segments_by(wo, sample.wi) == 0 {
+        walker.history.pass();
+    } else {
+        walker.history.bounce(sample.dirac);
+    }
     walker.inside = world.cross(walker.inside, &hit, -wo, sample.wi);
     walker.ray = leave(&hit.point, sample.wi);
     Next::Continue

@@ -9,7 +9,7 @@ use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
 use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
-use crate::material::{Bsdf, BsdfSample, Transport};
+use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::photon_map::{Bandwidth, NearestList, Query, gather};
 use crate::sampling::{Sampler, Sequence};
@@ -198,7 +198,8 @@ impl<'a> PhotonMapper<'a> {
             if let ([Some(a), Some(b)], true) = (lobes, branch.number < 1 << SPLITS) {
                 for (lobe, branch) in [a, b].into_iter().zip(branch.split([&a, &b])) {
                     let way = way.pass(self.world, &hit, lobe.wi);
-                    self.trace(way, throughput * lobe.weight, depth + 1, branch, sample, tools, out);
+                    let depth = depth + segments_by(wo, lobe.wi);
+                    self.trace(way, throughput * lobe.weight, depth, branch, sample, tools, out);
                 }
                 return;
             }
@@ -206,7 +207,7 @@ impl<'a> PhotonMapper<'a> {
                 return;
             };
             (way, throughput) = (way.pass(self.world, &hit, next), carried);
-            depth += 1;
+            depth += segments_by(wo, next);
         }
     }
 
@@ -322,12 +323,13 @@ impl<'a> PhotonMapper<'a> {
             normal: vertex.facing_normal(),
             max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
         };
+        let has_direct = self.config.direct == DirectSource::Map && wanted.map == MapName::Global;
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
         let Tools { neighbors, probe } = tools;
         let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
             let radiance = f * photon.power * weight;
-            *(if photon.depth == 1 { &mut direct } else { &mut other }) += radiance;
+            *(if has_direct && photon.depth == 1 { &mut direct } else { &mut other }) += radiance;
             probe.photon(photon, radiance);
         });
         probe.look_up(wanted, gathered);

@@ -6,7 +6,7 @@ use super::in_scatter::Segment;
 use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, Way, scatter};
 use crate::color::Rgb;
 use crate::integrator::{LightPart, LookUp, MapName, Met, Probe};
-use crate::material::{Bsdf, Transport};
+use crate::material::{Bsdf, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::photon_map::Bandwidth;
 use crate::sampling::Sampler;
@@ -154,7 +154,7 @@ impl PhotonMapper<'_> {
                 sharp = if gathers { glossy_share(&bsdf, wo, next) } else { Rgb::WHITE };
             }
             (way, throughput) = (way.pass(self.world, &hit, next), carried);
-            depth += 1;
+            depth += segments_by(wo, next);
         }
         found
     }
