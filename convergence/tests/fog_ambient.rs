@@ -237,3 +237,22 @@ fn a_medium_may_shine_by_a_grid() {
         }
     }
 }
+
+/// An extinction ends with its grid, which fills the upper half of a slab, and emission does not: 1 for each length gives
+/// (1 − e^(−σ/2))/σ from above, and e^(−σ/2)/2 from below.
+#[test]
+fn a_medium_shines_beyond_the_grid_of_its_extinction() {
+    const SIGMA: f32 = 1.5;
+    let half = 0.5 * f64::from(SIGMA);
+    let exact = -libm::expm1(-half) / f64::from(SIGMA) + 0.5 * libm::exp(-half);
+    let world = slab(|b, low, high| Medium {
+        sigma_t: b.grid(low.with_z(0.5), high, [1; 3], GridValues::Grey(vec![SIGMA])),
+        emission: Coefficient::Constant(Rgb::WHITE),
+        ..Medium::homogeneous("glow", Rgb::BLACK, Rgb::BLACK, Phase::Isotropic)
+    });
+    for method in methods() {
+        let means = channel_means(&world, &method, 64, 0..20);
+        let test: MeanTest = means.iter().map(|mean| mean[0]).collect();
+        test.within(exact, 1e-6).assert_passes(sidak(ALPHA, TESTS));
+    }
+}
