@@ -230,7 +230,8 @@ fn phase_functions_count_for_every_estimator() {
     const SIGMA: f64 = 1.0;
     let rayleigh = |cos: f64| 3.0 / (16.0 * PI) * (1.0 + cos * cos);
     let hg = |g: f32| (Phase::HenyeyGreenstein { g }, henyey_greenstein(f64::from(g)));
-    let lobes: [(Phase, Box<dyn Fn(f64) -> f64>); 3] = [
+    type Value = Box<dyn Fn(f64) -> f64>;
+    let lobes: [(Phase, Value); 3] = [
         (hg(0.8).0, Box::new(hg(0.8).1)),
         (hg(-0.8).0, Box::new(hg(-0.8).1)),
         (Phase::Rayleigh, Box::new(rayleigh)),
