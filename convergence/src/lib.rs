@@ -1,9 +1,13 @@
 //! Scenes built in code and renders of them, for the tests in `tests/`: every estimator against its
 //! closed form, and integrators against one another.
 
+mod fog;
 mod optics;
 mod view;
 
+pub use fog::{
+    KERNELS, channel_means, collisions, expect_fair_books, grey_fog, medium_view, medium_views, volpath,
+};
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
 pub use view::{
     block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders,

@@ -8,6 +8,9 @@ use crate::handle::Arena;
 use crate::math::{Ray, Vec3};
 use crate::sampling::Sampler;
 
+/// The optical depth behind which 2·10⁻⁹ is left.
+const OPAQUE: f32 = 20.0;
+
 /// A medium as light meets it.
 #[derive(Clone, Debug)]
 pub(crate) struct Matter {
@@ -71,10 +74,23 @@ impl Matter {
         }
     }
 
-    /// Where along a ray the last of the extinction lies, or less than 2·10⁻⁹ of every channel is left.
+    /// Where along a ray the last of the extinction lies, or less than 2·10⁻⁹ is left of every channel that has any:
+    /// nothing is scattered beyond. Finite but for extinctions that are nearly zero.
     pub fn reach(&self, ray: &Ray) -> f32 {
         match &self.extinction {
-            Extinction::Uniform(sigma_t) => 20.0 / sigma_t.min_channel(),
+            Extinction::Uniform(sigma_t) => {
+                sigma_t.to_array().into_iter().filter(|s| *s > 0.0).map(|s| OPAQUE / s).fold(0.0, f32::max)
+            }
+            Extinction::Cloud(cloud) => cloud.exit(ray),
+        }
+    }
+
+    /// How far along a ray what the medium gives off is seen. Extinctions end with their grid, behind which emission
+    /// goes on, to the end of the medium if that has one.
+    fn shining(&self, ray: &Ray, t_max: f32) -> f32 {
+        match &self.extinction {
+            Extinction::Uniform(sigma_t) => t_max.min(OPAQUE / sigma_t.min_channel()),
+            Extinction::Cloud(_) if t_max.is_finite() => t_max,
             Extinction::Cloud(cloud) => cloud.exit(ray),
         }
     }
@@ -88,7 +104,7 @@ impl Matter {
                 sigma_t.zip(*emission, |sigma_t, emission| emission * lit_length(sigma_t, t_max))
             }
             _ => {
-                let end = t_max.min(self.reach(ray));
+                let end = self.shining(ray, t_max);
                 let t = end * sampler.next_1d();
                 self.emission(ray.at(t)) * self.transmittance(ray, t, sampler) * end
             }

@@ -12,6 +12,9 @@ use crate::sampling::Sampler;
 /// Of how many parts of the scene a step of the report's march is one.
 const REPORT_STEPS: f32 = 128.0;
 
+/// The most steps of the other, however small what it finds.
+const MOST_STEPS: f32 = 4096.0;
+
 impl PhotonMapper<'_> {
     /// In steps as long as the radius of the last estimate, over which what it finds can change. In each a
     /// point is sampled by transmittance, so that the steps' lengths make no error.
@@ -27,9 +30,14 @@ impl PhotonMapper<'_> {
         let mut sum = Rgb::BLACK;
         let (mut from, mut radius) =
             (0.0, map.default_max_radius_in(segment.medium(), self.config.volume_neighbours()));
+        // The medium may have no photons.
+        if radius <= 0.0 || !end.is_finite() {
+            return Rgb::BLACK;
+        }
         while from < end {
+            let step = radius.max(end / MOST_STEPS);
             // The last step takes what would be left of another.
-            let to = if from + 1.5 * radius < end { from + radius } else { end };
+            let to = if from + 1.5 * step < end { from + step } else { end };
             let t = profile.sample(sampler.next_1d(), from, to);
             let pdf = profile.pdf(t, from, to);
             let (source, found) = self.source(map, segment, segment.ray.at(t), tools);
@@ -49,6 +57,9 @@ impl PhotonMapper<'_> {
         tools: &mut Tools<'_, P>,
     ) -> Rgb {
         let end = segment.end.min(segment.matter.reach(segment.ray));
+        if map.default_max_radius_in(segment.medium(), 2) <= 0.0 || !end.is_finite() {
+            return Rgb::BLACK;
+        }
         let step = self.config.march_step.unwrap_or(2.0 * self.world.radius() / REPORT_STEPS);
         let steps = (end / step).ceil().max(1.0);
         (0..steps as u32).rev().fold(Rgb::BLACK, |behind, k| {
