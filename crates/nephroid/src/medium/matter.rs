@@ -88,9 +88,9 @@ impl Matter {
                 sigma_t.zip(*emission, |sigma_t, emission| emission * lit_length(sigma_t, t_max))
             }
             _ => {
-                let end = t_max.min(self.reach(ray));
-                let t = end * sampler.next_1d();
-                self.emission(ray.at(t)) * self.transmittance(ray, t, sampler) * end
+                let [from, to] = self.lit(ray, t_max);
+                let t = from + (to - from) * sampler.next_1d();
+                self.emission(ray.at(t)) * self.transmittance(ray, t, sampler) * (to - from)
             }
         }
     }
@@ -126,6 +126,22 @@ impl Matter {
     #[inline]
     pub fn emission(&self, p: Vec3) -> Rgb {
         self.emission.at(p)
+    }
+
+    /// The same, and nothing beside the grid of an extinction, which is where the medium ends.
+    pub fn glow(&self, p: Vec3) -> Rgb {
+        match &self.extinction {
+            Extinction::Cloud(cloud) if !cloud.contains(p) => Rgb::BLACK,
+            _ => self.emission(p),
+        }
+    }
+
+    /// The part of a ray that it gives off light to.
+    fn lit(&self, ray: &Ray, t_max: f32) -> [f32; 2] {
+        match &self.extinction {
+            Extinction::Uniform(_) => [0.0, t_max.min(self.reach(ray))],
+            Extinction::Cloud(cloud) => cloud.inside(ray, t_max),
+        }
     }
 
     /// Transmittance along a ray with a direction of unit length from its origin to `t_max`, which may be
