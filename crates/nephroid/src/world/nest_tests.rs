@@ -90,8 +90,8 @@ fn a_glass_of_water_has_three_surfaces() {
     // The height at which glass turns to water; of equal priorities the first shape is the higher.
     for (priorities, turn) in [([7, 2], 1.0), ([0, 1], 0.9), ([4, 4], 1.0)] {
         let world = glass_of_water(-3.0, priorities.map(Some));
-        for sin in [0.0, 0.3, 0.8, 0.99] {
-            let cos = (1.0 - sin * sin as f64).sqrt();
+        for sin in [0.0f64, 0.3, 0.8, 0.99] {
+            let cos = (1.0 - sin * sin).sqrt();
             let offset = tangent(sin, 1.5) * turn + tangent(sin, 1.33) * (2.0 - turn);
             let share = passes(sin, 1.0, 1.5) * passes(sin, 1.5, 1.33) * passes(sin, 1.33, 1.0);
             for up in [1.0, -1.0] {
