@@ -12,7 +12,7 @@ use crate::sampling::power_heuristic;
 use crate::transport::{
     DirectLights, Lit, Partner, PixelSample, Scatterer, light_pdf, sample_lights, sky_by_bsdf, survival,
 };
-use crate::world::{Surroundings, World, leave};
+use crate::world::{World, leave};
 
 /// Settings of the path tracer.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +61,8 @@ fn radiance<P: Probe>(
     probe.begin(None, Rgb::WHITE);
     let mut out = Components::default();
     let mut ray = sample.ray;
-    let mut inside = if config.media { world.camera_surroundings() } else { Surroundings::BLIND };
+    let inside = world.camera_surroundings();
+    let mut inside = if config.media { inside } else { inside.blind() };
     let mut throughput = Rgb::WHITE;
     let mut last = Last::Certain;
     let mut so_far = SoFar::default();
@@ -127,7 +128,7 @@ fn radiance<P: Probe>(
             };
             book(&mut out, so_far.part(last), throughput * emitted * weight, probe);
         }
-        let bsdf = world.bsdf(&hit, wo);
+        let bsdf = world.bsdf_within(&hit, wo, &inside);
         if bsdf.is_null() {
             inside = world.cross(inside, &hit, ray.direction, ray.direction);
             ray = leave(&hit.point, ray.direction);

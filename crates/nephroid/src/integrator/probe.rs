@@ -91,8 +91,8 @@ pub(crate) trait Probe {
     fn surface(&mut self, _met: &Met<'_>) {}
     /// Light that was found without photons.
     fn light(&mut self, _part: LightPart, _radiance: Rgb) {}
-    /// A photon counts in the look-up that is going on.
-    fn photon(&mut self, _photon: &Photon, _radiance: Rgb) {}
+    /// A photon counts in the look-up that is going on, with the direct light or with the other.
+    fn photon(&mut self, _photon: &Photon, _is_direct: bool, _radiance: Rgb) {}
     /// A look-up is done.
     fn look_up(&mut self, _look_up: &LookUp, _gathered: Gathered) {}
 }

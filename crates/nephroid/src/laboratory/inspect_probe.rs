@@ -106,8 +106,8 @@ pub(super) struct InspectProbe<'c> {
     /// The last surface of the camera path, and of what is being traced.
     camera_surface: Option<usize>,
     surface: Option<usize>,
-    /// Photons of the look-up that is going on.
-    photons: Vec<(Photon, Rgb)>,
+    /// Photons of the look-up that is going on, whether each is direct light, and what it brings.
+    photons: Vec<(Photon, bool, Rgb)>,
     surfaces: Vec<SurfaceMet>,
     rays: Vec<RayLight>,
     look_ups: Vec<LookUpReport>,
@@ -176,15 +176,15 @@ impl Probe for InspectProbe<'_> {
         }
     }
 
-    fn photon(&mut self, photon: &Photon, radiance: Rgb) {
-        self.photons.push((*photon, radiance));
+    fn photon(&mut self, photon: &Photon, is_direct: bool, radiance: Rgb) {
+        self.photons.push((*photon, is_direct, radiance));
     }
 
     fn look_up(&mut self, look_up: &LookUp, gathered: Gathered) {
         let carried = self.carried();
         let mut sums: BTreeMap<(u32, Bounces), Contribution> = BTreeMap::new();
-        for (photon, radiance) in self.photons.drain(..) {
-            let part = if photon.depth == 1 { look_up.direct } else { look_up.other };
+        for (photon, is_direct, radiance) in self.photons.drain(..) {
+            let part = if is_direct { look_up.direct } else { look_up.other };
             let record = self.catalogues.and_then(|c| c[look_up.map as usize].find(&photon));
             let (Some(part), Some(record)) = (part, record) else { continue };
             let (light, bounces) = (record.photon.light, record.bounces);

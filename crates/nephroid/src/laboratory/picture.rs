@@ -167,10 +167,12 @@ fn background(world: &World, window: &Crop) -> Image {
         let (x, y) = (i % window.width as usize, i / window.width as usize);
         let position = Vec2::new((window.x as usize + x) as f32 + 0.5, (window.y as usize + y) as f32 + 0.5);
         let mut ray = world.camera().ray(position, MIDDLE_OF_LENS);
+        let mut inside = world.camera_surroundings();
         while let Some(hit) = world.intersect(&ray) {
-            if !world.bsdf(&hit, -ray.direction).is_null() {
+            if !world.bsdf_within(&hit, -ray.direction, &inside).is_null() {
                 return Rgb::splat(BACKGROUND * (0.25 + 0.75 * hit.point.ns.dot(ray.direction).abs()));
             }
+            inside = world.cross(inside, &hit, ray.direction, ray.direction);
             ray = leave(&hit.point, ray.direction);
         }
         Rgb::BLACK

@@ -3,9 +3,12 @@ use std::f32::consts::PI;
 use super::aim::{Cones, Disks, Targets};
 use super::area::AreaEmitter;
 use super::environment::{ConstantSky, EnvironmentMap};
+use super::glow::Glow;
 use super::spot::Spot;
 use crate::color::Rgb;
+use crate::handle::Handle;
 use crate::math::{Frame, Ray, Vec2, Vec3, warp};
+use crate::medium::Medium;
 use crate::shape::{Mesh, SurfacePoint};
 use crate::texture::Textures;
 
@@ -101,11 +104,20 @@ pub(crate) struct Emitter {
 #[derive(Clone, Debug)]
 pub(crate) enum EmitterKind {
     Area(AreaEmitter),
-    Point { position: Vec3, intensity: Rgb },
+    Point {
+        position: Vec3,
+        intensity: Rgb,
+    },
     Spot(Spot),
-    Directional { direction: Vec3, irradiance: Rgb, target: Target },
+    Directional {
+        direction: Vec3,
+        irradiance: Rgb,
+        target: Target,
+    },
     Constant(ConstantSky),
     Environment(EnvironmentMap),
+    /// A medium that gives off light: paths and camera rays find it on their way, photons start in it.
+    Medium(Box<Glow>),
 }
 
 /// The sphere at which light from infinitely far away is aimed.
@@ -180,6 +192,7 @@ impl Emitter {
             }
             EmitterKind::Constant(sky) => Some(sky.sample_incident(u)),
             EmitterKind::Environment(map) => map.sample_incident(lookup.textures, u),
+            EmitterKind::Medium(_) => None,
         }
     }
 
@@ -216,8 +229,14 @@ impl Emitter {
             EmitterKind::Area(area) => Some(area.middle()),
             EmitterKind::Point { position, .. } => Some(*position),
             EmitterKind::Spot(spot) => Some(spot.position),
+            EmitterKind::Medium(glow) => Some(glow.middle()),
             EmitterKind::Directional { .. } | EmitterKind::Constant(_) | EmitterKind::Environment(_) => None,
         }
+    }
+
+    /// The medium that it is.
+    pub fn medium(&self) -> Option<Handle<Medium>> {
+        if let EmitterKind::Medium(glow) = &self.kind { Some(glow.medium()) } else { None }
     }
 
     /// Whether rays that meet nothing see it.
@@ -263,6 +282,7 @@ impl Emitter {
             }
             EmitterKind::Constant(sky) => sky.emit(u, targets, sphere(u.direction)),
             EmitterKind::Environment(map) => map.emit(lookup.textures, u, targets),
+            EmitterKind::Medium(glow) => glow.emit(u, sphere),
         }
     }
 }

@@ -5,6 +5,7 @@ mod aim;
 mod area;
 mod emitter;
 mod environment;
+mod glow;
 mod spot;
 
 #[cfg(test)]
@@ -15,6 +16,7 @@ pub(crate) use area::AreaEmitter;
 pub use emitter::{Emission, Incident, Source, SphereSampling};
 pub(crate) use emitter::{EmissionNumbers, Emitter, EmitterKind, Lookup, Target};
 pub(crate) use environment::{ConstantSky, EnvironmentMap};
+pub(crate) use glow::{Glow, Lattice};
 pub(crate) use spot::Spot;
 
 use crate::color::Rgb;

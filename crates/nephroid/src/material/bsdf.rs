@@ -81,6 +81,20 @@ impl Bsdf {
         Self { ng, frame, lobes }
     }
 
+    /// The same place with no surface.
+    pub(crate) fn nulled(self) -> Self {
+        Self { lobes: Lobes::Null, ..self }
+    }
+
+    /// The same, the boundary of two dielectrics with another index of refraction on the inner side relative to the
+    /// outer one.
+    pub(crate) fn with_eta(self, eta: f32) -> Self {
+        match self.lobes {
+            Lobes::Dielectric(own) => Self { lobes: Lobes::Dielectric(Dielectric { eta, ..own }), ..self },
+            _ => self,
+        }
+    }
+
     /// Whether all scattering is in Dirac lobes, so that there is no density to estimate here.
     #[inline]
     pub fn is_dirac(&self) -> bool {

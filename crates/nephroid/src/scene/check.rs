@@ -8,7 +8,7 @@ use crate::light::LightKind;
 use crate::material::{self, Material};
 use crate::math::Transform;
 use crate::medium;
-use crate::shape::{Geometry, Mesh};
+use crate::shape::{Geometry, Mesh, Shape};
 use crate::texture::Texture;
 
 /// Longest side of a picture.
@@ -182,6 +182,9 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
         if !scene.materials.contains(shape.material) {
             problems.add(subject, "its material does not exist");
         }
+        if shape.boundary.priority.is_some() {
+            check_priority(scene, shape, subject, problems);
+        }
         let needs_uniform_scale = match shape.geometry {
             Geometry::Sphere { center, radius } => {
                 positive(radius, "radius", subject, problems);
@@ -224,6 +227,25 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
             }
             check_emission(scene, emission, subject, problems);
         }
+    }
+}
+
+/// A priority says what is inside where shapes overlap: so there must be an inside, and light must come there.
+fn check_priority(scene: &Scene, shape: &Shape, subject: Subject, problems: &mut Problems) {
+    if matches!(shape.geometry, Geometry::Rectangle | Geometry::Disk | Geometry::Cylinder { .. }) {
+        let message = "a rectangle, a disk or a cylinder, which has no caps, encloses nothing and has no \
+                       priority: use a closed shape";
+        problems.add(subject, message);
+    }
+    if scene.materials.contains(shape.material)
+        && !matches!(scene.materials[shape.material], Material::Dielectric { .. } | Material::Null)
+    {
+        let message = "only what light goes into has a priority: make it a smooth dielectric or `null`, or take \
+                       the priority away";
+        problems.add(subject, message);
+    }
+    if shape.emission.is_some() {
+        problems.add(subject, "a lamp has no priority: put a lamp without one in its place");
     }
 }
 
@@ -381,7 +403,7 @@ mod tests {
     use crate::light::Light;
     use crate::math::{Affine2, DVec3, Vec2, Vec3};
     use crate::medium::{Boundary, Grid, GridValues, Medium, Phase};
-    use crate::shape::{Group, Shape};
+    use crate::shape::Group;
     use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
 
     fn empty() -> Scene {
@@ -489,6 +511,41 @@ mod tests {
                 "shape 1: its interior medium does not exist",
                 "light 0: the medium that it is in does not exist",
                 "camera: the medium that it is in does not exist",
+            ]
+        );
+    }
+
+    #[test]
+    fn only_closed_shapes_that_light_goes_into_have_a_priority() {
+        let mut scene = empty();
+        let white = scene.textures.constant(Rgb::WHITE);
+        let glass = scene.materials.push(Material::Dielectric {
+            int_ior: 1.5,
+            ext_ior: 1.0,
+            specular_reflectance: white,
+            specular_transmittance: white,
+        });
+        let paper = scene.materials.push(Material::Diffuse { reflectance: white });
+        let null = scene.materials.push(Material::Null);
+        let ball = Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 };
+        let boundary = Boundary { priority: Some(0), ..Boundary::default() };
+        let shape =
+            |geometry: &Geometry, material| Shape { boundary, ..Shape::new("s", geometry.clone(), material) };
+        scene.shapes.extend([glass, null].map(|material| shape(&ball, material)));
+        assert!(messages(&scene).is_empty());
+        scene.shapes = vec![
+            shape(&Geometry::Rectangle, glass),
+            shape(&ball, paper),
+            Shape { emission: Some(white), ..shape(&Geometry::Cube, null) },
+        ];
+        assert_eq!(
+            messages(&scene),
+            [
+                "a rectangle, a disk or a cylinder, which has no caps, encloses nothing and has no priority: use \
+                 a closed shape",
+                "only what light goes into has a priority: make it a smooth dielectric or `null`, or take the \
+                 priority away",
+                "a lamp has no priority: put a lamp without one in its place",
             ]
         );
     }

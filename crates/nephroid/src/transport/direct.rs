@@ -176,7 +176,7 @@ fn sample_bsdf(
             let pdf = light_pdf(world, light, from, &hit.point, lights);
             through * radiance * power_heuristic(sample.pdf_solid_angle, pdf)
         });
-        if !world.bsdf(&hit, -ray.direction).is_null() {
+        if !world.bsdf_within(&hit, -ray.direction, &inside).is_null() {
             return sample.weight * seen;
         }
         inside = world.cross(inside, &hit, ray.direction, ray.direction);

@@ -12,7 +12,7 @@ pub enum PhotonKind {
     /// L S+ D S* D: a caustic's light after one more bounce. The global map's, and known apart, since
     /// gather rays do not bring it.
     Afterglow,
-    /// V S* D: light from a medium. The global map's, and known apart for the same reason.
+    /// V S* D and, from a medium that gives it off, L S* D: light from a medium. The global map's, and known apart for the same reason.
     Haze,
     /// All the rest: the global map's, or that of the volume.
     Global,
@@ -27,11 +27,17 @@ pub(super) struct History {
     straight: u32,
     /// Whether the first surface that was not specular was lit by one that was.
     from_caustic: bool,
-    /// Whether the last of the others was a collision.
+    /// Whether the last of the others was a collision, or was none and the light started in a medium.
     from_medium: bool,
 }
 
 impl History {
+    /// That of light which a medium gives off. Nothing looks for it but the paths that pass through: it is in the maps
+    /// as if it had been scattered where it starts.
+    pub fn from_medium() -> Self {
+        Self { from_medium: true, ..Self::default() }
+    }
+
     /// Bounces that make a segment.
     pub fn bounces(&self) -> u32 {
         self.specular + self.other - self.straight
@@ -40,9 +46,9 @@ impl History {
     /// What a photon is that lands now on a surface that is not specular.
     pub fn kind(&self) -> PhotonKind {
         match (self.specular, self.other) {
+            _ if self.from_medium => PhotonKind::Haze,
             (0, 0) => PhotonKind::Direct,
             (_, 0) => PhotonKind::Caustic,
-            _ if self.from_medium => PhotonKind::Haze,
             (_, 1) if self.from_caustic => PhotonKind::Afterglow,
             _ => PhotonKind::Global,
         }
@@ -51,6 +57,7 @@ impl History {
     /// What a photon is that collides now.
     pub fn kind_in_medium(&self) -> PhotonKind {
         match (self.specular, self.other) {
+            _ if self.from_medium => PhotonKind::Global,
             (0, 0) => PhotonKind::Direct,
             (_, 0) => PhotonKind::Caustic,
             _ => PhotonKind::Global,
@@ -61,7 +68,7 @@ impl History {
         if dirac {
             self.specular += 1;
         } else {
-            self.from_caustic |= self.other == 0 && self.specular > 0;
+            self.from_caustic |= self.other == 0 && self.specular > 0 && !self.from_medium;
             self.from_medium = false;
             self.other += 1;
         }
@@ -84,7 +91,10 @@ mod tests {
     use super::*;
 
     fn history(path: &str) -> History {
-        let mut history = History::default();
+        after(History::default(), path)
+    }
+
+    fn after(mut history: History, path: &str) -> History {
         for letter in path.chars() {
             match letter {
                 'V' => history.collide(),
@@ -110,6 +120,21 @@ mod tests {
         }
         for path in ["V", "VS", "SV", "DV", "SDV", "DVSS", "VV"] {
             assert_eq!(kind(path), PhotonKind::Haze, "{path}");
+        }
+    }
+
+    #[test]
+    fn light_of_a_medium_is_haze_first_and_then_global() {
+        let kinds = |path: &str| {
+            let history = after(History::from_medium(), path);
+            assert_eq!(history.bounces() as usize, path.len());
+            (history.kind(), history.kind_in_medium())
+        };
+        for path in ["", "S", "SS", "V", "DV", "SVS"] {
+            assert_eq!(kinds(path), (PhotonKind::Haze, PhotonKind::Global), "{path}");
+        }
+        for path in ["D", "SD", "SDS", "DD", "VD"] {
+            assert_eq!(kinds(path), (PhotonKind::Global, PhotonKind::Global), "{path}");
         }
     }
 

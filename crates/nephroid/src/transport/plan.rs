@@ -83,13 +83,15 @@ impl PhotonPlan {
             return Self::default();
         }
         let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
-        let specular = !too_short && world.has_dirac_surfaces();
+        // Light of media makes no caustics, and is indirect from the start.
+        let specular = !too_short && world.has_dirac_surfaces() && world.lights_for_direct().is_some();
+        let short_enough = !too_short || world.glows();
         let volume = world.has_media() && settings.fog == Fog::Volume;
         let plan = |map| {
             let (wanted, possible) = match map {
-                MapKind::Global => (targets.global, !too_short || targets.store_direct),
+                MapKind::Global => (targets.global, short_enough || targets.store_direct),
                 MapKind::Caustic => (targets.caustic, specular),
-                MapKind::Volume => (targets.volume, volume && (!too_short || targets.store_single_scatter)),
+                MapKind::Volume => (targets.volume, volume && (short_enough || targets.store_single_scatter)),
                 MapKind::VolumeCaustic => (targets.volume, volume && specular),
             };
             if wanted == 0 || !possible {

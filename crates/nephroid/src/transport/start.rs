@@ -1,11 +1,12 @@
 //! Where photon paths start: which light, from where, in which direction, with what power.
 
-use super::walk::{LightChoice, MapKind, WalkSettings};
+use super::history::History;
+use super::walk::{Fog, LightChoice, MapKind, WalkSettings};
 use crate::color::Rgb;
 use crate::light::{EmissionNumbers, SphereSampling};
 use crate::math::{Ray, Vec2, Vec3, warp};
 use crate::sampling::Sampler;
-use crate::world::{World, leave};
+use crate::world::{Surroundings, World, leave};
 
 /// The start of a path.
 pub(super) struct Start {
@@ -15,6 +16,9 @@ pub(super) struct Start {
     pub power: Rgb,
     /// What it stands for of all the light that is given off, in W.
     pub emitted: Rgb,
+    /// What it starts in.
+    pub inside: Surroundings,
+    pub history: History,
 }
 
 /// Starts path `path`; `None` if there is no light.
@@ -51,6 +55,14 @@ pub(super) fn start(
     };
     let (emitter, u) = (&world.emitters()[light], EmissionNumbers { position, direction, target });
     let emission = emitter.emit(world.lookup(), u, aim.map(|aim| &aim.targets), sphere);
+    if let Some(medium) = emitter.medium() {
+        let starts = settings.fog == Fog::Volume && matches!(map, MapKind::Global | MapKind::Volume);
+        let found = world.glow(medium, emission.ray.origin).filter(|_| starts);
+        let (inside, glow) = found.unwrap_or_default();
+        let power = emission.power * glow / probability;
+        let history = History::from_medium();
+        return Some(Start { light, ray: emission.ray, power, emitted: power, inside, history });
+    }
     let ray = match emission.surface {
         Some(point) => leave(&point, emission.ray.direction),
         None if emitter.is_infinite() => aims.before_planes(emission.ray),
@@ -61,7 +73,9 @@ pub(super) fn start(
         Some(aim) if emission.power != emission.emitted => level(emission.power, aim.levels[light], u_level),
         _ => emission.power,
     };
-    Some(Start { light, ray, power: power / probability, emitted: emission.emitted / probability })
+    let (power, emitted) = (power / probability, emission.emitted / probability);
+    let (inside, history) = (world.light_surroundings(light), History::default());
+    Some(Start { light, ray, power, emitted, inside, history })
 }
 
 /// Keeps photons that carry much less than others of their light with so much lower a probability,

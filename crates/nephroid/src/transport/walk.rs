@@ -141,17 +141,17 @@ pub(super) fn walk(
     books: &mut [Balance],
     mut visit: impl FnMut(Event, PhotonKind) -> Next,
 ) {
-    let Some(Start { light, ray, power, emitted }) = start(world, settings, map, path, sampler) else {
+    let Some(start) = start(world, settings, map, path, sampler) else {
         return;
     };
+    let Start { light, ray, power, emitted, inside, history } = start;
     let book = &mut books[light];
     book.emit(emitted);
     book.escape(emitted - power);
     if power.is_black() {
         return;
     }
-    let inside = world.light_surroundings(light);
-    let (history, roulette) = (History::default(), [0.0; 3]);
+    let roulette = [0.0; 3];
     let mut walker = Walker { ray, power, inside, history, light: light as u32, roulette };
     while step(world, settings, &mut walker, sampler, book, &mut visit) == Next::Continue {}
     book.roulette(walker.roulette);
@@ -211,7 +211,7 @@ fn step(
         return Next::Stop;
     };
     let wo = -walker.ray.direction;
-    let bsdf = world.bsdf(&hit, wo);
+    let bsdf = world.bsdf_within(&hit, wo, &walker.inside);
     if bsdf.is_null() {
         walker.inside = world.cross(walker.inside, &hit, -wo, -wo);
         walker.ray = leave(&hit.point, -wo);

@@ -1,4 +1,5 @@
 use super::level::{Item, Level, Other};
+use super::nest::ranks;
 use super::placed::Placed;
 use super::scenery::Scenery;
 use super::{Aims, Surfaced, Surroundings, World};
@@ -37,7 +38,7 @@ impl World {
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
         let for_direct = for_direct(&emitters);
-        let surfaces: Vec<Surfaced> = scene
+        let mut surfaces: Vec<Surfaced> = scene
             .all_shapes()
             .enumerate()
             .map(|(i, s)| {
@@ -50,9 +51,14 @@ impl World {
                     masked: inside != s.material && !invisible,
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
+                    rank: 0,
                 }
             })
             .collect();
+        let ranked = ranks(&scene);
+        for (rank, one) in (1..).zip(&ranked) {
+            surfaces[one.shape as usize].rank = rank;
+        }
         let transparent = surfaces.iter().any(|s| s.invisible);
         let cutouts = surfaces.iter().any(|s| s.masked);
         let Media { list, grids } = &scene.media;
@@ -68,6 +74,7 @@ impl World {
             surfaces,
             cutouts,
             transparent,
+            surface_lights: emitters.len(),
             emitters,
             by_power,
             for_direct,
@@ -75,12 +82,16 @@ impl World {
             bounds,
             aims,
             lamps,
+            ranked,
             matters,
             camera_surroundings: Surroundings::default(),
             light_surroundings: Vec::new(),
             remarks: Vec::new(),
         };
         world.look_around();
+        if world.has_media() {
+            world.kindle();
+        }
         Ok(world)
     }
 }

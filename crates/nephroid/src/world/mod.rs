@@ -5,7 +5,11 @@ mod build;
 mod cutout;
 #[cfg(test)]
 mod cutout_tests;
+mod glow;
 mod level;
+mod nest;
+#[cfg(test)]
+mod nest_tests;
 mod placed;
 mod scenery;
 mod surroundings;
@@ -18,6 +22,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
@@ -43,6 +48,8 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
+    /// How many of them are no media; those that are come last.
+    surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
     /// Emitters as next event estimation asks them.
@@ -52,6 +59,8 @@ pub struct World {
     aims: Aims,
     /// What each emitter is in the scene.
     lamps: Vec<Subject>,
+    /// The shapes that have a priority.
+    ranked: Vec<Ranked>,
     /// The media of the scene, if any of them is anywhere.
     matters: Vec<Matter>,
     camera_surroundings: Surroundings,
@@ -72,6 +81,8 @@ struct Surfaced {
     light: Option<(Handle<Texture>, u32)>,
     /// What it lies between, if it names any medium.
     boundary: Option<Boundary>,
+    /// Its place among the shapes that have a priority; 0 if it has none.
+    rank: Rank,
 }
 
 /// Where a ray meets a surface, as the search finds it: see [`World::nearest`].
@@ -196,7 +207,8 @@ impl World {
         if self.surfaces[hit.shape as usize].flipped { point.flipped() } else { point }
     }
 
-    /// Whether anything but null surfaces lies on the ray before its end.
+    /// Whether anything but null surfaces lies on the ray before its end. Priorities count for nothing here: what
+    /// they hide depends on where a ray comes from.
     pub fn occluded(&self, ray: &Ray) -> bool {
         if self.cutouts || self.transparent {
             self.scenery.any(ray, |hit| {
@@ -213,7 +225,7 @@ impl World {
         &self.scene.materials[Material::unmasked(&self.scene.materials, material)]
     }
 
-    /// How the surface scatters, seen from the side of `wo`.
+    /// How the surface scatters, seen from the side of `wo` and not from inside of any shape with a priority.
     pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
         let material = self.surfaces[hit.shape as usize].material;
         let surface = Surface { ng: hit.point.ng, frame: Frame::from_normal(hit.point.ns), uv: hit.point.uv };

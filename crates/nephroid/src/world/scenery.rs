@@ -3,6 +3,7 @@ use super::level::{Candidate, Item, Level, Other, Searcher};
 use super::placed::Placed;
 use crate::bvh::{Lanes, Simd, Work};
 use crate::math::{Bounds, Ray, Vec2};
+use crate::scene::Scene;
 use crate::shape::{Intersection, Mesh, Primitive, SurfacePoint, Triangle};
 
 /// All surfaces of a scene, ready for rays.
@@ -78,6 +79,25 @@ impl Scenery {
         let first = self.owner.partition_point(|&owner| (owner as usize) < shape);
         let own = self.owner[first..].iter().take_while(|&&owner| owner as usize == shape).count();
         &self.primitives[first..first + own]
+    }
+
+    /// Bounds of a shape in the world, at all places where it is; `None` if it is infinite.
+    pub fn bounds_of(&self, shape: usize, scene: &Scene) -> Option<Bounds> {
+        let local = match self.mesh_of[shape] {
+            Some(mesh) => Bounds::of(self.meshes[mesh as usize].positions.iter().copied()),
+            None => self.pieces(shape).iter().try_fold(Bounds::EMPTY, |bounds, piece| {
+                let own = piece.bounds();
+                (!own.is_empty()).then(|| bounds.union(own))
+            })?,
+        };
+        let Some(mut number) = shape.checked_sub(scene.shapes.len()) else { return Some(local) };
+        let group = scene.groups.iter().position(|group| {
+            let own = number < group.shapes.len();
+            number -= if own { 0 } else { group.shapes.len() };
+            own
+        })?;
+        let places = self.instances.iter().filter(|placed| placed.group as usize == group);
+        Some(places.fold(Bounds::EMPTY, |bounds, placed| bounds.union(placed.bounds(local))))
     }
 
     /// Bounds of what is finite; empty if nothing is.

@@ -1,6 +1,7 @@
 //! What fills the space where a path is: media change where surfaces that name some are crossed.
 
-use super::{Hit, RayHit, World, leave};
+use super::nest::Nest;
+use super::{Hit, RayHit, Surfaced, World, leave};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::light::Source;
@@ -12,18 +13,24 @@ use crate::shape::SurfacePoint;
 /// What fills the space that a path is in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Surroundings {
-    medium: Option<Handle<Medium>>,
+    pub(super) medium: Option<Handle<Medium>>,
+    /// The medium around all shapes that have a priority, known while the path is inside of any.
+    pub(super) outside: Option<Handle<Medium>>,
     /// Whether the path takes no notice of media.
-    blind: bool,
+    pub(super) blind: bool,
+    /// The shapes with priorities that it is inside of.
+    pub(super) nest: Nest,
 }
 
 impl Surroundings {
-    /// Those of a path that takes no notice of media.
-    pub const BLIND: Self = Self { medium: None, blind: true };
-
     /// Inside a medium or, with `None`, outside of all.
     pub fn of(medium: Option<Handle<Medium>>) -> Self {
-        Self { medium, blind: false }
+        Self { medium, ..Self::default() }
+    }
+
+    /// The same for a path that takes no notice of media.
+    pub fn blind(self) -> Self {
+        Self { medium: None, outside: None, blind: true, nest: self.nest }
     }
 
     /// The medium, if there is one.
@@ -103,12 +110,19 @@ impl World {
         before: Vec3,
         direction: Vec3,
     ) -> Surroundings {
-        let Some(boundary) = &self.surfaces[hit.shape as usize].boundary else { return inside };
-        let ahead = direction.dot(hit.point.ng);
-        if inside.blind || before.dot(hit.point.ng) * ahead <= 0.0 {
+        let Surfaced { boundary, rank, .. } = &self.surfaces[hit.shape as usize];
+        if boundary.is_none() && *rank == 0 {
             return inside;
         }
-        Surroundings::of(beyond(boundary, ahead))
+        let ahead = direction.dot(hit.point.ng);
+        if before.dot(hit.point.ng) * ahead <= 0.0 {
+            return inside;
+        }
+        match boundary {
+            _ if *rank != 0 => self.cross_ranked(inside, hit.shape, *rank, ahead),
+            Some(boundary) if !inside.blind => Surroundings { medium: beyond(boundary, ahead), ..inside },
+            _ => inside,
+        }
     }
 
     /// The share of light from `source` in direction `wi` that reaches a point, right in the mean. `inside` is what
@@ -122,7 +136,7 @@ impl World {
         sampler: &mut Sampler,
     ) -> Rgb {
         let ray = from.shadow_ray(wi, source);
-        if self.matters.is_empty() || inside.blind {
+        if !self.has_ranks() && (self.matters.is_empty() || inside.blind) {
             return if self.occluded(&ray) { Rgb::BLACK } else { Rgb::WHITE };
         }
         let length = ray.direction.length();
@@ -131,12 +145,12 @@ impl World {
     }
 
     /// The share of light that comes through to the end of a ray with a direction of unit length: null surfaces
-    /// are passed, all others stop it.
+    /// and those inside of shapes of higher priority are passed, all others stop it.
     fn transmittance(&self, mut ray: Ray, mut inside: Surroundings, sampler: &mut Sampler) -> Rgb {
         let mut through = Rgb::WHITE;
         loop {
             let hit = self.nearest(&ray);
-            if hit.is_some_and(|hit| !self.surfaces[hit.shape as usize].invisible) {
+            if hit.is_some_and(|hit| self.stops(&ray, hit, &inside)) {
                 return Rgb::BLACK;
             }
             if let Some(matter) = self.matter(inside) {
@@ -148,6 +162,14 @@ impl World {
             inside = self.cross(inside, &met(hit, point), direction, direction);
             ray = Ray { t_max: ray.t_max - hit.t, ..leave(&point, direction) };
         }
+    }
+
+    /// Whether a surface stops a shadow ray.
+    #[inline]
+    fn stops(&self, ray: &Ray, hit: RayHit, inside: &Surroundings) -> bool {
+        let Surfaced { invisible, rank, .. } = self.surfaces[hit.shape as usize];
+        let hidden = || self.is_hidden(&met(hit, self.surface(ray, &hit)), ray.direction, inside);
+        !invisible && (rank == 0 || !hidden())
     }
 }
 

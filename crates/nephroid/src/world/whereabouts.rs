@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use super::nest::Nest;
 use super::surroundings::beyond;
-use super::{Hit, Surroundings, World, leave};
+use super::{Hit, RayHit, Surfaced, Surroundings, World, leave};
 use crate::handle::Handle;
 use crate::light::{EmissionNumbers, EmitterKind};
 use crate::material::Material;
@@ -47,14 +48,16 @@ impl Votes {
 impl World {
     /// Finds what the camera and the lights stand in, and what seems to have been forgotten.
     pub(super) fn look_around(&mut self) {
-        if !self.has_media() {
+        if !self.has_media() && !self.has_ranks() {
             return;
         }
         let mut remarks = Vec::new();
-        self.camera_surroundings = match self.scene.camera.medium {
+        let outside = match self.scene.camera.medium {
             Some(medium) => Surroundings::of(Some(medium)),
             None => self.found(Subject::Camera, "the camera stands", self.camera_probes(), &mut remarks),
         };
+        self.camera_surroundings =
+            self.nested(outside, self.scene.camera.medium.is_some(), self.camera_probes());
         self.light_surroundings =
             (0..self.emitters.len()).map(|light| self.around_light(light, &mut remarks)).collect();
         // Without bounds around it, what light may meet lies in every direction.
@@ -80,12 +83,53 @@ impl World {
             Subject::Light(number) => self.scene.lights[number].medium.map(Some),
             _ => None,
         };
-        match named {
+        let outside = match named {
             Some(medium) => Surroundings::of(medium),
             // It comes from outside of everything.
-            None if emitter.is_infinite() => Surroundings::default(),
+            None if emitter.is_infinite() => return Surroundings::default(),
             None => self.found(subject, "its light starts", self.light_probes(light), remarks),
+        };
+        if emitter.is_infinite() {
+            return outside;
         }
+        self.nested(outside, named.is_some(), self.light_probes(light))
+    }
+
+    /// The same inside of the shapes with priorities that most of some rays begin in. What is `given` is not to be
+    /// found in the highest of them.
+    pub(super) fn nested(
+        &self,
+        outside: Surroundings,
+        given: bool,
+        rays: impl Iterator<Item = Ray>,
+    ) -> Surroundings {
+        if !self.has_ranks() {
+            return outside;
+        }
+        let mut votes = BTreeMap::<(u32, Option<u32>), i32>::new();
+        for ray in rays {
+            for (shape, from_within) in self.first_sides(ray) {
+                *votes.entry(shape).or_default() += if from_within { 1 } else { -1 };
+            }
+        }
+        let around = votes.into_iter().filter(|(_, votes)| *votes > 0).map(|((shape, _), _)| shape);
+        let nest = around.fold(Nest::default(), |nest, shape| nest.with(self.surfaces[shape as usize].rank));
+        let there = self.ranked(nest.top()).filter(|_| !given);
+        let medium = there.map_or(outside.medium, |there| there.interior);
+        Surroundings { medium, outside: outside.medium, nest, ..outside }
+    }
+
+    /// The shapes with priorities along a ray, and whether it meets each from within first.
+    fn first_sides(&self, mut ray: Ray) -> BTreeMap<(u32, Option<u32>), bool> {
+        let mut sides = BTreeMap::new();
+        for _ in 0..MAX_SURFACES {
+            let ranked = |hit: &RayHit| self.surfaces[hit.shape as usize].rank != 0;
+            let Some(hit) = self.scenery.nearest(&ray, ranked) else { break };
+            let point = self.surface(&ray, &hit);
+            sides.entry((hit.shape, hit.instance)).or_insert(ray.direction.dot(point.ng) > 0.0);
+            ray = leave(&point, ray.direction);
+        }
+        sides
     }
 
     /// What most of some rays find; a remark where they do not agree.
@@ -123,13 +167,16 @@ impl World {
         Surroundings::of(medium)
     }
 
-    /// The side of the first surface along a ray that names media: which medium that is, and the shape. What light
-    /// cannot pass ends the search.
-    fn first_boundary(&self, mut ray: Ray) -> Option<(Option<Handle<Medium>>, u32)> {
+    /// The side of the first surface along a ray that names media: which medium that is, and the shape; of a shape
+    /// with a priority what is outside. What light cannot pass ends the search.
+    pub(super) fn first_boundary(&self, mut ray: Ray) -> Option<(Option<Handle<Medium>>, u32)> {
         for _ in 0..MAX_SURFACES {
             let hit = self.intersect(&ray)?;
-            if let Some(boundary) = &self.surfaces[hit.shape as usize].boundary {
-                return Some((beyond(boundary, -ray.direction.dot(hit.point.ng)), hit.shape));
+            let Surfaced { boundary, rank, .. } = &self.surfaces[hit.shape as usize];
+            if let Some(boundary) = boundary {
+                // Inside of one with a priority is whatever is the highest there.
+                let ahead = if *rank == 0 { -ray.direction.dot(hit.point.ng) } else { 1.0 };
+                return Some((beyond(boundary, ahead), hit.shape));
             }
             if !self.may_pass(&hit) {
                 return None;
@@ -177,6 +224,7 @@ impl World {
     fn forgotten_exterior(&self, shape: usize) -> Option<Remark> {
         let surfaced = &self.surfaces[shape];
         if surfaced.boundary.is_some()
+            || surfaced.rank != 0
             || !matches!(self.material_of(shape as u32), Material::Dielectric { .. })
         {
             return None;

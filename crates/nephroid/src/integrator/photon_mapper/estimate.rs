@@ -183,7 +183,7 @@ impl<'a> PhotonMapper<'a> {
                 out.emitted += throughput * emitted;
                 tools.probe.light(LightPart::Emitted, emitted);
             }
-            let bsdf = self.world.bsdf(&hit, wo);
+            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
@@ -268,7 +268,9 @@ impl<'a> PhotonMapper<'a> {
                 out.global += throughput * global;
             }
         }
-        if shows_global && self.fits(vertex.depth + 2) {
+        // Light of media comes straight to it, too, and nowhere else.
+        let straight = u32::from(self.world.glows());
+        if shows_global && self.fits(vertex.depth + 2 - straight) {
             let (bsdf, most) = match self.gather_rays {
                 Some(most) => (*vertex.bsdf, most),
                 None if vertex.bsdf.has_glossy_lobe() => (vertex.bsdf.glossy_part(), 1),
@@ -329,8 +331,9 @@ impl<'a> PhotonMapper<'a> {
         let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
             let radiance = f * photon.power * weight;
-            *(if has_direct && photon.depth == 1 { &mut direct } else { &mut other }) += radiance;
-            probe.photon(photon, radiance);
+            let is_direct = has_direct && photon.depth == 1 && !self.world.is_medium_light(photon.light);
+            *(if is_direct { &mut direct } else { &mut other }) += radiance;
+            probe.photon(photon, is_direct, radiance);
         });
         probe.look_up(wanted, gathered);
         (direct, other)

@@ -129,7 +129,7 @@ impl PhotonMapper<'_> {
             let Some(hit) = hit else { break };
             distance += hit.t;
             let wo = -way.ray.direction;
-            let bsdf = self.world.bsdf(&hit, wo);
+            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
