@@ -4,6 +4,8 @@
 mod fog;
 mod optics;
 mod view;
+mod volume_scenes;
+mod volumes;
 
 pub use fog::{
     KERNELS, channel_means, collisions, expect_fair_books, grey_fog, medium_view, medium_views, volpath,
@@ -12,6 +14,10 @@ pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance,
 pub use view::{
     block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders,
 };
+pub use volume_scenes::{
+    balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,
+};
+pub use volumes::{between, blocks, boxed, facing, volpath};
 
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;

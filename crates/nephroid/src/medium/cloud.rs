@@ -37,10 +37,6 @@ impl Cloud {
         self.placed.crossing(ray, f32::INFINITY).map_or(0.0, |crossing| crossing.start + crossing.length)
     }
 
-    pub fn contains(&self, p: Vec3) -> bool {
-        self.placed.contains(self.placed.to_cells(p))
-    }
-
     /// Delta tracking, where a tentative collision is real with a probability that all channels share: the
     /// mean of σ_t over the majorant, weighted by what the channels carry by then. Their weights are
     /// multiplied by what happened over its probability, so what is carried altogether does not change

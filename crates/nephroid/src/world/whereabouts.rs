@@ -87,6 +87,8 @@ impl World {
             Some(medium) => Surroundings::of(medium),
             // It comes from outside of everything.
             None if emitter.is_infinite() => return Surroundings::default(),
+            // What the camera is said to stand in is everywhere.
+            None if self.surfaces.iter().all(|s| s.boundary.is_none()) => self.camera_surroundings,
             None => self.found(subject, "its light starts", self.light_probes(light), remarks),
         };
         if emitter.is_infinite() {

@@ -166,8 +166,8 @@ impl<'a> PhotonMapper<'a> {
             if let Some(matter) = self.world.matter(way.inside) {
                 let end = hit.map_or(f32::INFINITY, |hit| hit.t);
                 let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth };
-                let reads = sample.index.is_multiple_of(self.stride);
-                let (seen, through) = self.through_medium(&segment, reads, &mut sample.sampler, tools);
+                let samples = if sample.index.is_multiple_of(self.stride) { self.stride } else { 0 };
+                let (seen, through) = self.through_medium(&segment, samples, &mut sample.sampler, tools);
                 out.medium += throughput * seen;
                 throughput *= through;
                 tools.probe.carry(throughput);

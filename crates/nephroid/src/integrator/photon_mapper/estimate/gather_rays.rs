@@ -121,7 +121,8 @@ impl PhotonMapper<'_> {
                     throughput *= matter.transmittance(&way.ray, end, sampler);
                 } else {
                     tools.probe.carry(throughput * sharp);
-                    let (seen, through) = self.through_medium(&segment, true, sampler, tools);
+                    // The sample that sent the ray counts for others already.
+                    let (seen, through) = self.through_medium(&segment, 1, sampler, tools);
                     found += throughput * sharp * seen;
                     throughput *= through;
                 }

@@ -37,11 +37,11 @@ impl Segment<'_> {
 
 impl PhotonMapper<'_> {
     /// The radiance that a medium adds to a ray from its way, and the share of what lies behind that comes
-    /// through. Maps are read only if `reads`, and count for the samples that do not.
+    /// through. What maps tell counts for `samples` camera samples; for none they are not read.
     pub(super) fn through_medium<P: Probe>(
         &self,
         segment: &Segment<'_>,
-        reads: bool,
+        samples: u32,
         sampler: &mut Sampler,
         tools: &mut Tools<'_, P>,
     ) -> (Rgb, Rgb) {
@@ -61,14 +61,14 @@ impl PhotonMapper<'_> {
         if self.config.single_scatter == DirectSource::Rays && self.fits(segment.depth + 1) {
             seen += self.single_scatter(segment, &profile, sampler);
         }
-        if reads {
+        if samples > 0 {
             let found: Rgb = self
                 .maps
                 .volumes
                 .iter()
                 .map(|map| self.scattered(map, segment, &profile, sampler, tools))
                 .sum();
-            seen += found * self.stride as f32;
+            seen += found * samples as f32;
         }
         tools.probe.light(LightPart::Medium, seen);
         (seen, through)
