@@ -58,7 +58,7 @@ fn density([x, y, z]: [f64; 3]) -> f64 {
     let noise = octaves([6.0 * x + warp(17.0), 8.0 * y + warp(29.0), 6.0 * z + warp(43.0)], 4);
     let distance = (dx * dx + dz * dz).sqrt() / width;
     let body = smooth((1.0 - distance + 2.2 * (noise - 0.5)) / 0.7);
-    let fade = smooth((1.0 - y) / 0.3) * (1.0 - 0.6 * y);
+    let fade = smooth((0.97 - y) / 0.5) * (1.0 - 0.5 * y);
     let edge = |t: f64| smooth(t.min(1.0 - t) / 0.08);
     (body * fade * edge(x) * edge(z) * (0.35 + 0.65 * noise)).clamp(0.0, 1.0)
 }
