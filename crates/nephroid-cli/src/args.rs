@@ -132,6 +132,9 @@ pub struct DisplayArgs {
 pub struct ScenesArgs {
     /// Print the file of this scene
     pub name: Option<String>,
+    /// Write the files that this scene reads into a folder: its grids
+    #[arg(long, value_name = "FOLDER", requires = "name")]
+    pub files: Option<PathBuf>,
 }
 
 /// `nephroid tonemap`.

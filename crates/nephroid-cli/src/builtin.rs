@@ -1,5 +1,10 @@
 //! Scenes that are part of the program.
 
+use std::io;
+use std::path::Path;
+
+use nephroid_formats::vfs::{DiskFiles, Files, normalized};
+
 /// A scene that can be rendered by its name from any folder.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltinScene {
@@ -7,14 +12,20 @@ pub struct BuiltinScene {
     pub name: &'static str,
     /// Its file.
     pub text: &'static str,
+    /// The files that stand beside it: their names and their bytes.
+    pub files: &'static [(&'static str, &'static [u8])],
 }
 
 /// What is rendered if no scene is named.
 pub const DEFAULT: &str = "cornell";
 
 macro_rules! scene {
-    ($name:literal) => {
-        BuiltinScene { name: $name, text: include_str!(concat!("../../../scenes/", $name, ".xml")) }
+    ($name:literal $(, $file:literal)*) => {
+        BuiltinScene {
+            name: $name,
+            text: include_str!(concat!("../../../scenes/", $name, ".xml")),
+            files: &[$(($file, include_bytes!(concat!("../../../scenes/", $file)))),*],
+        }
     };
 }
 
@@ -22,6 +33,10 @@ macro_rules! scene {
 pub const SCENES: &[BuiltinScene] = &[
     scene!("cornell"),
     scene!("nephroid"),
+    scene!("fog"),
+    scene!("fog-forward"),
+    scene!("fog-backward"),
+    scene!("smoke", "smoke.vol"),
     scene!("report-2-2a"),
     scene!("report-2-2b"),
     scene!("report-2-3"),
@@ -38,6 +53,10 @@ pub const SCENES: &[BuiltinScene] = &[
     scene!("report-2-12"),
     scene!("report-2-13"),
     scene!("report-2-14"),
+    scene!("report-3-6"),
+    scene!("report-3-7"),
+    scene!("report-3-8"),
+    scene!("report-3-9"),
     scene!("report-3-12"),
 ];
 
@@ -52,6 +71,17 @@ impl BuiltinScene {
         let comment = self.text.split_once("<!--").and_then(|(_, rest)| rest.split_once("-->"));
         let comment = comment.map_or("", |(comment, _)| comment.trim());
         comment.strip_prefix(self.name).and_then(|rest| rest.strip_prefix(':')).map_or("", str::trim)
+    }
+}
+
+impl Files for BuiltinScene {
+    /// The scene's own files come first. A parameter may name one on the disk.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let path = normalized(path);
+        match self.files.iter().find(|(name, _)| path == Path::new(name)) {
+            Some((_, bytes)) => Ok(bytes.to_vec()),
+            None => DiskFiles.read(&path),
+        }
     }
 }
 

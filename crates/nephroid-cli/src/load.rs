@@ -33,9 +33,7 @@ fn builtin_of(scene: &Path) -> Option<&'static BuiltinScene> {
 pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
     let options = Options { defines: args.defines.clone(), lenient: args.lenient };
     let file = match builtin_of(scene) {
-        Some(BuiltinScene { name, text }) => {
-            read_scene_str(&format!("{name}.xml"), text, &DiskFiles, &options)
-        }
+        Some(builtin) => read_scene_str(&format!("{}.xml", builtin.name), builtin.text, builtin, &options),
         None => {
             check_readable(scene)?;
             read_scene(scene, &DiskFiles, &options)

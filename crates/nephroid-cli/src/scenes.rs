@@ -1,5 +1,7 @@
 //! `nephroid scenes`: the built-in scenes.
 
+use std::path::Path;
+
 use nephroid_formats::diagnostic::closest;
 
 use crate::args::ScenesArgs;
@@ -11,7 +13,12 @@ use crate::exit::{Exit, Failure};
 pub fn run(args: &ScenesArgs) -> Result<Exit, Failure> {
     match &args.name {
         Some(name) => match builtin::find(name) {
-            Some(scene) => console::result(scene.text)?,
+            Some(scene) => {
+                if let Some(folder) = &args.files {
+                    write_files(scene, folder)?;
+                }
+                console::result(scene.text)?;
+            }
             None => return Err(Failure::Usage(unknown(name))),
         },
         None => {
@@ -21,6 +28,16 @@ pub fn run(args: &ScenesArgs) -> Result<Exit, Failure> {
         }
     }
     Ok(Exit::Done)
+}
+
+/// Writes what a scene reads beside its own file, under the names that it uses.
+fn write_files(scene: &builtin::BuiltinScene, folder: &Path) -> Result<(), Failure> {
+    for (name, bytes) in scene.files {
+        let path = folder.join(name);
+        let told = |error| Failure::File(format!("{}: cannot be written: {error}", path.display()));
+        std::fs::write(&path, bytes).map_err(told)?;
+    }
+    Ok(())
 }
 
 /// The message for a name that no built-in scene has.
