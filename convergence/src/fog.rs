@@ -38,7 +38,7 @@ impl Builder {
     }
 
     /// A part of space that a medium fills, with vacuum around it.
-    pub fn cloud(&mut self, geometry: Geometry, to_world: Transform, medium: Handle<Medium>) -> &mut Shape {
+    pub fn filled(&mut self, geometry: Geometry, to_world: Transform, medium: Handle<Medium>) -> &mut Shape {
         let null = self.scene.materials.push(Material::Null);
         let shape = self.shape(geometry, to_world, null);
         shape.boundary.interior = Some(medium);
@@ -48,7 +48,7 @@ impl Builder {
     /// The box between two corners, filled with a medium.
     pub fn box_of(&mut self, low: DVec3, high: DVec3, medium: Handle<Medium>) -> &mut Shape {
         let to_world = Transform::scale(0.5 * (high - low)).then(Transform::translate(0.5 * (low + high)));
-        self.cloud(Geometry::Cube, to_world, medium)
+        self.filled(Geometry::Cube, to_world, medium)
     }
 
     /// A coefficient on a grid of `size` cells between two corners.

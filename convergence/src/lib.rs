@@ -17,7 +17,7 @@ pub use view::{
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,
 };
-pub use volumes::{between, blocks, boxed, facing, volpath};
+pub use volumes::{between, blocks, boxed, facing};
 
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;

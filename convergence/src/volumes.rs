@@ -2,7 +2,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::integrator::{Method, PathConfig};
+use nephroid::integrator::Method;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::medium::{Boundary, Coefficient, Grid, GridValues, Medium, Phase};
@@ -15,11 +15,6 @@ use crate::{Builder, session};
 /// A medium on either side of a surface.
 pub fn between(interior: Option<Handle<Medium>>, exterior: Option<Handle<Medium>>) -> Boundary {
     Boundary { interior, exterior, ..Boundary::default() }
-}
-
-/// The unbiased reference, with media.
-pub fn volpath() -> Method {
-    Method::Path(PathConfig { media: true, ..PathConfig::default() })
 }
 
 /// A rectangle of half sides `half` around `center`, its normal turned from +z by `degrees` about `axis`.

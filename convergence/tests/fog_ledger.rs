@@ -31,7 +31,7 @@ fn camera() -> Builder {
 fn ball(medium: Medium) -> World {
     let mut b = camera();
     let medium = b.medium(medium);
-    b.cloud(Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 }, Transform::IDENTITY, medium);
+    b.filled(Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 }, Transform::IDENTITY, medium);
     b.point_light(Vec3::ZERO, 1.0);
     b.build()
 }

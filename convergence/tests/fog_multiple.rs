@@ -119,7 +119,7 @@ fn half_space(medium: Medium, mu: f64, mu0: f64) -> World {
     let mut b = Builder::parallel_view(direction(mu) * 5.0, Vec3::ZERO, 0.1, 4, 4);
     b.sunlight(-direction(mu0), 1.0);
     let medium = b.medium(medium);
-    b.cloud(Geometry::Plane, Transform::IDENTITY, medium);
+    b.filled(Geometry::Plane, Transform::IDENTITY, medium);
     b.build()
 }
 

@@ -62,7 +62,7 @@ fn passing_ray(medium: Medium, bounds: Bounds) -> World {
     match bounds {
         Bounds::None => b.fill(medium),
         Bounds::Ball => {
-            b.cloud(Geometry::Sphere { center: Vec3::ZERO, radius: 150.0 }, Transform::IDENTITY, medium);
+            b.filled(Geometry::Sphere { center: Vec3::ZERO, radius: 150.0 }, Transform::IDENTITY, medium);
         }
     }
     b.build()
@@ -147,7 +147,7 @@ fn light_ahead(medium: Medium, bounds: Bounds) -> World {
         Bounds::None => b.fill(medium),
         Bounds::Ball => {
             let ball = Geometry::Sphere { center: Vec3::ZERO, radius: REACH as f32 };
-            b.cloud(ball, Transform::IDENTITY, medium);
+            b.filled(ball, Transform::IDENTITY, medium);
         }
     }
     b.build()

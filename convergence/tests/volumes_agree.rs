@@ -92,7 +92,7 @@ fn assert_agree(found: &[Vec<f64>], reference: &[Vec<f64>], [of_all, of_block]: 
 fn all_agree(scene: Builder, times: f64) {
     let world = scene.build();
     assert_eq!(world.remarks(), []);
-    let reference = traced(&world, &volpath());
+    let reference = traced(&world, &volpath(None));
     for look_up in [POINTS, MARCH, BEAMS] {
         for final_gather in [FinalGather::Off, FinalGather::Rays(2)] {
             let config = look_up.method(DirectSource::Rays, final_gather);
@@ -188,7 +188,7 @@ fn in_a_coloured_cloud_under_the_sky() {
 #[test]
 fn with_light_scattered_once_from_the_map() {
     let world = fog(0.0).build();
-    let reference = traced(&world, &volpath());
+    let reference = traced(&world, &volpath(None));
     for look_up in [POINTS, MARCH, BEAMS] {
         let config = look_up.method(DirectSource::Map, FinalGather::Off);
         let bias = look_up.bias.map(|b| 1.5 * b);
@@ -220,7 +220,7 @@ fn bias_shrinks_as_photons_get_more() {
         blocks(&world, &Method::PhotonMapper(config), 16, 500..500 + seeds, BLOCK)
     };
     let upper = |blocks: &[Vec<f64>]| -> MeanTest { blocks[0].iter().copied().collect() };
-    let exact = upper(&traced(&world, &volpath()));
+    let exact = upper(&traced(&world, &volpath(None)));
     let (few, many) = (upper(&dark(4000, 10)), upper(&dark(64_000, 6)));
     let lack = |found: &MeanTest| 1.0 - found.mean() / exact.mean();
     let (few, many) = (lack(&few), lack(&many));

@@ -37,7 +37,7 @@ fn methods(emit: Option<u64>) -> Vec<(&'static str, Method)> {
     let beams = PhotonMapperConfig { volume_kind: VolumeKind::Beams, ..points.clone() };
     let ambient = PhotonMapperConfig { fog: Fog::Ambient, ..points.clone() };
     vec![
-        ("volpath", volpath()),
+        ("volpath", volpath(None)),
         ("points", Method::PhotonMapper(points.clone())),
         ("march", Method::PhotonMapper(march(VolumeEstimate::March))),
         ("the report's march", Method::PhotonMapper(march(VolumeEstimate::MarchReport))),

@@ -66,7 +66,7 @@ fn assert_depth_within(world: &World, depth: f64, share: f64, what: &str) {
     let mapper = Method::PhotonMapper(PhotonMapperConfig { emit: Some(64), ..Default::default() });
     let seen = means(world, &mapper, 1, 1..2)[0];
     assert!((seen / exact - 1.0).abs() < share, "{what}: {seen}, not {exact}");
-    let paths: MeanTest = means(world, &volpath(), 64, 0..16).into_iter().collect();
+    let paths: MeanTest = means(world, &volpath(None), 64, 0..16).into_iter().collect();
     let outcome = paths.within(exact, 1e-4);
     assert!(outcome.passes(sidak(ALPHA, TESTS)), "{what}: {outcome}");
 }
