@@ -42,13 +42,14 @@ fn no_rings_lie_round_a_lamp_in_fog() {
     }
 }
 
-/// Figure 3.9 without its mistakes. With fog in the glass, too, the cone is gone.
+/// Figure 3.9 without its mistakes. The cone is 1.9 times as bright as what is beside it, and 1.45
+/// times with fog in the glass, too.
 #[test]
 fn a_glass_sphere_in_fog_throws_a_cone_and_is_not_bright() {
     let image = green("report-3-9", &[]);
     let cone = mean(&image, [30, 34], [43, 48]);
     let beside = 0.5 * (mean(&image, [23, 26], [43, 48]) + mean(&image, [38, 41], [43, 48]));
-    assert!(cone > 1.4 * beside, "{cone} in the cone, {beside} beside it");
+    assert!(cone > 1.65 * beside, "{cone} in the cone, {beside} beside it");
     let glass = mean(&image, [29, 35], [30, 37]);
     let around = 0.5 * (mean(&image, [18, 22], [30, 37]) + mean(&image, [42, 46], [30, 37]));
     assert!(glass < 1.25 * around, "{glass} in the glass, {around} beside it");
