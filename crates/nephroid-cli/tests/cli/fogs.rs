@@ -31,7 +31,8 @@ fn no_rings_lie_round_a_lamp_in_fog() {
         let (x, y) = (31.5, 0.5 * SIDE as f32 * (1.0 - 0.5 / 1.84) - 0.5);
         // Downwards, for the ceiling is lit as well.
         let ring = |radius: usize| {
-            let at = |i: usize| ((i % SIDE) as f32 - x).hypot((i / SIDE) as f32 - y) as usize;
+            let distance = |dx: f32, dy: f32| (dx * dx + dy * dy).sqrt() as usize;
+            let at = |i: usize| distance((i % SIDE) as f32 - x, (i / SIDE) as f32 - y);
             let here = (0..SIDE * SIDE).filter(|&i| (i / SIDE) as f32 >= y && at(i) == radius);
             let (sum, count) = here.fold((0.0, 0), |(sum, count), i| (sum + image[i], count + 1));
             sum / count as f32
