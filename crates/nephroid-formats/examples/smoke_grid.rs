@@ -7,23 +7,14 @@
 //! The same file on every machine: noise comes from a hash of integers, and of the functions of real numbers
 //! only the square root is used, which is exact everywhere.
 
-use std::process::ExitCode;
+use std::io;
 
 /// Cells along x, y (up) and z.
 const SIZE: [i32; 3] = [48, 88, 48];
 
-fn main() -> ExitCode {
-    let Some(path) = std::env::args().nth(1) else {
-        eprintln!("smoke_grid FILE.vol");
-        return ExitCode::from(2);
-    };
-    match std::fs::write(&path, volume()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{path}: {error}");
-            ExitCode::from(4)
-        }
-    }
+fn main() -> io::Result<()> {
+    let usage = || io::Error::other("write smoke_grid FILE.vol");
+    std::fs::write(std::env::args_os().nth(1).ok_or_else(usage)?, volume())
 }
 
 /// A `.vol` of version 3: a byte for each cell of the unit cube.
@@ -87,7 +78,7 @@ fn noise(point: [f64; 3], seed: u32) -> f64 {
     let t = [0, 1, 2].map(|axis| smooth(point[axis] - corner[axis]));
     let mut sum = 0.0;
     for i in 0..8 {
-        let bits = [i & 1, i >> 1 & 1, i >> 2 & 1];
+        let bits = [i & 1, (i >> 1) & 1, (i >> 2) & 1];
         let weight = |axis: usize| if bits[axis] == 1 { t[axis] } else { 1.0 - t[axis] };
         let at = [0, 1, 2].map(|axis| corner[axis] as i32 + bits[axis]);
         sum += weight(0) * weight(1) * weight(2) * value(at, seed);

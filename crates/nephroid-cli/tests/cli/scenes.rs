@@ -32,6 +32,19 @@ fn a_scene_prints_its_file_which_renders() {
 }
 
 #[test]
+fn a_scene_with_a_grid_can_be_copied_with_it() {
+    let dir = Dir::new();
+    let text = dir.run(&["scenes", "smoke", "--files", "."]).ends_with(0).stdout;
+    std::fs::write(dir.path("mine.xml"), text).unwrap();
+    assert_eq!(dir.files(), ["mine.xml", "smoke.vol"]);
+    dir.render("mine.xml", &["-o", "a.exr"]).ends_with(0);
+    std::fs::remove_file(dir.path("smoke.vol")).unwrap();
+    dir.render("smoke", &["-o", "b.exr"]).ends_with(0);
+    assert!(dir.read("a.exr") == dir.read("b.exr"));
+    dir.run(&["scenes", "smoke", "--files", "none"]).ends_with(4).says("smoke.vol: cannot be written");
+}
+
+#[test]
 fn every_built_in_scene_renders_without_a_word_of_complaint() {
     let dir = Dir::new();
     for name in names() {

@@ -30,6 +30,8 @@ pub const CHEAP: &[&str] = &[
     "200",
     "--caustic-photons",
     "200",
+    "--volume-photons",
+    "200",
     "--emit-max",
     "20",
 ];
