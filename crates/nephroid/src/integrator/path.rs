@@ -10,7 +10,8 @@ use crate::medium::{Passage, PhaseSample};
 use crate::photon_map::NearestList;
 use crate::sampling::power_heuristic;
 use crate::transport::{
-    DirectLights, Lit, Partner, PixelSample, Scatterer, light_pdf, sample_lights, sky_by_bsdf, survival,
+    DirectLights, Lit, Partner, PixelSample, Scatterer, effort, light_pdf, sample_lights, sky_by_bsdf,
+    survival,
 };
 use crate::world::{World, leave};
 
@@ -94,7 +95,7 @@ fn radiance<P: Probe>(
                         book(&mut out, so_far.part(Last::Certain), direct, probe);
                     }
                     let (u, u_survive) = (sample.sampler.next_2d(), sample.sampler.next_1d());
-                    let q = survival(before * weight, throughput, depth - 1);
+                    let q = survival(before * weight, throughput, effort(depth - 1, so_far.collisions - 1));
                     if u_survive >= q || throughput.is_black() {
                         break;
                     }
@@ -148,7 +149,8 @@ fn radiance<P: Probe>(
         let (u, u_lobe, u_survive) = (s.next_2d(), s.next_1d(), s.next_1d());
         let Some(scattered) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { break };
         let carried = throughput * scattered.weight;
-        let q = survival(throughput, carried / scattered.radiance_scale, depth - 1);
+        let q =
+            survival(throughput, carried / scattered.radiance_scale, effort(depth - 1, so_far.collisions));
         if u_survive >= q {
             break;
         }
@@ -175,6 +177,7 @@ fn lights(world: &World, config: &PathConfig, lit: &Lit<'_>, sample: &mut PixelS
 struct SoFar {
     /// Surfaces that are not specular, and collisions.
     scattered: u32,
+    collisions: u32,
     /// Whether the first of them was a collision.
     by_medium: bool,
 }
@@ -183,6 +186,7 @@ impl SoFar {
     fn collide(&mut self) {
         self.by_medium |= self.scattered == 0;
         self.scattered += 1;
+        self.collisions += 1;
     }
 
     /// What light is that the path finds now: a specular surface after the only other one makes it a caustic.

@@ -239,6 +239,14 @@ impl Emitter {
         if let EmitterKind::Medium(glow) = &self.kind { Some(glow.medium()) } else { None }
     }
 
+    /// The part of a ray up to `end` that its light can fall on; `None` if there is none.
+    pub fn lit_part(&self, ray: &Ray, end: f32) -> Option<[f32; 2]> {
+        match &self.kind {
+            EmitterKind::Spot(spot) => spot.lit_part(ray, end),
+            _ => Some([0.0, end]),
+        }
+    }
+
     /// Whether rays that meet nothing see it.
     pub fn is_sky(&self) -> bool {
         matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))

@@ -60,6 +60,35 @@ impl Spot {
         self.peak * tint * falloff
     }
 
+    /// The part of a ray up to `end` inside the cone, whose points p have (p − a)·n ≥ |p − a| cos θ: a quadratic in
+    /// the distance. `None` if there is none.
+    pub fn lit_part(&self, ray: &Ray, end: f32) -> Option<[f32; 2]> {
+        let (d, n) = (ray.direction.as_dvec3(), self.frame.n.as_dvec3());
+        let v = (ray.origin - self.position).as_dvec3();
+        let cos_sq = libm::cos(f64::from(self.cutoff)).powi(2);
+        let (dn, vn) = (d.dot(n), v.dot(n));
+        let (a, b) = (dn * dn - cos_sq, vn * dn - cos_sq * v.dot(d));
+        let c = vn * vn - cos_sq * v.length_squared();
+        let root = (b * b - a * c).max(0.0).sqrt();
+        let (low, high) = (((-b - root) / a).min((-b + root) / a), ((-b - root) / a).max((-b + root) / a));
+        let [from, to] = match a {
+            // Along the cone, forward or back.
+            a if a > 0.0 && dn > 0.0 => [high, f64::INFINITY],
+            a if a > 0.0 => [f64::NEG_INFINITY, low],
+            // Across it, or across its image behind the light.
+            _ if b * b <= a * c || vn + 0.5 * (low + high) * dn <= 0.0 => return None,
+            _ => [low, high],
+        };
+        // As wide as rounding may have made it too narrow.
+        let margin = 1e-5 * (v.length() + from.abs().min(to.abs()));
+        let (from, to) = ((from - margin).max(0.0) as f32, (to + margin).min(f64::from(end)) as f32);
+        // Near the cone's own slope nothing can be said: all of it, then.
+        if a.abs() < 1e-9 || from.is_nan() || to.is_nan() {
+            return Some([0.0, end]);
+        }
+        (from < to).then_some([from, to])
+    }
+
     /// W: the integral of the intensity, exact up to the texture, of which the mean counts.
     ///
     /// The linear edge from b to c counts 1 − (sin c − sin b)/(c − b) = 1 − cos m · sin(h)/h with the
@@ -124,6 +153,7 @@ impl Spot {
 mod tests {
     use super::*;
     use crate::math::DVec3;
+    use crate::sampling::{Key, Sampler, Sequence, Stream};
 
     fn numbers(direction: Vec2) -> EmissionNumbers {
         EmissionNumbers { position: Vec2::ZERO, direction, target: 0.0 }
@@ -150,6 +180,37 @@ mod tests {
                 let mean = sum / f64::from(n * n);
                 assert!((mean / exact - 1.0).abs() < 0.01, "{cutoff_deg}: {mean} of {exact}");
             }
+        }
+    }
+
+    /// Along rays anywhere, the points that light falls on lie in the part, and about all of the part is lit.
+    #[test]
+    fn the_lit_part_of_a_ray_is_what_lies_in_the_cone() {
+        let askew = Transform::rotate(DVec3::new(1.0, 2.0, 3.0), 40.0);
+        let textures = Textures::default();
+        for (cutoff, rays) in [(3.0, 4000u64), (30.0, 1000), (80.0, 1000)] {
+            let spot = Spot::new(&askew, Rgb::WHITE, cutoff, cutoff, None);
+            let mut lit = 0;
+            for i in 0..rays {
+                let mut s = Sampler::new(Sequence::Independent, Key::new(7, 0, Stream::Pilot), i);
+                let ray = Ray::new(
+                    warp::square_to_sphere(s.next_2d()) * (4.0 * s.next_1d()),
+                    warp::square_to_sphere(s.next_2d()),
+                );
+                let end = if i % 3 == 0 { f32::INFINITY } else { 5.0 };
+                let part = spot.lit_part(&ray, end);
+                for k in 0..500 {
+                    let t = (k as f32 + s.next_1d()) * 0.01;
+                    let to_point = ray.at(t) - spot.position;
+                    let is_lit = !spot.intensity(&textures, to_point.normalize()).is_black();
+                    let inside = part.is_some_and(|[from, to]| (from..=to).contains(&t));
+                    lit += u32::from(is_lit);
+                    assert!(inside || !is_lit, "{part:?} lacks {t} of {ray:?}");
+                    let near_end = part.is_some_and(|[a, b]| (t - a).abs().min((t - b).abs()) < 2e-3);
+                    assert!(is_lit || !inside || near_end, "{part:?} has {t} of {ray:?}");
+                }
+            }
+            assert!(lit > 500, "{lit} points at {cutoff}");
         }
     }
 

@@ -1,5 +1,7 @@
 //! What a photon is, by what its path has met.
 
+use super::roulette::effort;
+
 /// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
 /// bounce, D any other, V a collision in a medium; null surfaces count as nothing. The last letter is where the
 /// photon lies: D on a surface, V in a medium.
@@ -23,6 +25,8 @@ pub enum PhotonKind {
 pub(super) struct History {
     specular: u32,
     other: u32,
+    /// Of the others those in media.
+    collisions: u32,
     /// Of the specular ones those that light went straight on at, which make no segment.
     straight: u32,
     /// Whether the first surface that was not specular was lit by one that was.
@@ -41,6 +45,11 @@ impl History {
     /// Bounces that make a segment.
     pub fn bounces(&self) -> u32 {
         self.specular + self.other - self.straight
+    }
+
+    /// Bounces as roulette counts them.
+    pub fn effort(&self) -> u32 {
+        effort(self.specular + self.other, self.collisions)
     }
 
     /// What a photon is that lands now on a surface that is not specular.
@@ -83,6 +92,7 @@ impl History {
     pub fn collide(&mut self) {
         self.from_medium = true;
         self.other += 1;
+        self.collisions += 1;
     }
 }
 

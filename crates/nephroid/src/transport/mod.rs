@@ -22,5 +22,5 @@ pub use ledger::{Balance, Ledger};
 pub use photon_pass::{Extras, InMedia, PhotonPass, photon_pass, volume_pass};
 pub use plan::{MapPlan, PhotonPlan, PhotonTargets, VolumeKind};
 pub use recorder::{Bounces, RecordedPass, RecordedPhoton, record_photon_pass};
-pub(crate) use roulette::survival;
+pub(crate) use roulette::{effort, survival};
 pub use walk::{Fog, LightChoice, WalkSettings};

@@ -6,6 +6,15 @@ const FREE_BOUNCES: u32 = 64;
 /// The survival of a path that has gone on for so long.
 const LATE_SURVIVAL: f32 = 0.95;
 
+/// Collisions in media that count as one bounce: light goes on for long in milk and clouds, and comes out of them.
+const COLLISIONS_PER_BOUNCE: u32 = 16;
+
+/// Bounces as roulette counts them, of which so many were collisions.
+#[inline]
+pub(crate) fn effort(bounces: u32, collisions: u32) -> u32 {
+    bounces - collisions + collisions / COLLISIONS_PER_BOUNCE
+}
+
 /// The probability with which a path goes on after a bounce that changed what it carries from
 /// `before` to `after`: the ratio of the largest channels, so that what survivors carry stays level.
 /// Never 0 where a channel is left, and survivors are divided by it: no channel is biased

@@ -118,7 +118,7 @@ impl Walker {
 
     /// Roulette after a bounce that left `scattered` of the power; false if the path ends.
     fn survives(&mut self, scattered: Rgb, u: f32) -> bool {
-        let q = survival(self.power, scattered, self.history.bounces());
+        let q = survival(self.power, scattered, self.history.effort());
         let survives = u < q;
         self.gamble(scattered, if survives { scattered / q } else { Rgb::BLACK });
         survives
@@ -192,6 +192,12 @@ fn step(
                             next = visit(Event::Way(beam), kind);
                         }
                     });
+                if !beam.long && matter.uniform_extinction().is_some() {
+                    if let Passage::Collision { t, .. } = passage {
+                        beam.length = t;
+                    }
+                    next = visit(Event::Way(beam), kind);
+                }
                 if next == Next::Stop {
                     book.end(carried);
                     return Next::Stop;
@@ -299,17 +305,18 @@ fn collide(
     Next::Continue
 }
 
-/// The beam that begins with a walker's next segment, as long as the medium lets light be seen.
+/// The beam that begins with a walker's next segment: all of it where it ends and the transmittance is known, as long as
+/// the medium lets light be seen; else one that ends where the walker collides.
 fn way(world: &World, walker: &Walker, matter: &Matter, end: f32) -> Beam {
     Beam {
         origin: walker.ray.origin,
         direction: walker.ray.direction,
-        length: end.min(matter.reach(&walker.ray)).min(2.0 * world.radius()),
+        length: if end.is_finite() { end.min(matter.reach(&walker.ray)) } else { 2.0 * world.radius() },
         power: walker.power,
         depth: u16::try_from(walker.depth()).unwrap_or(u16::MAX),
         light: walker.light,
         medium: medium_number(walker.inside),
-        long: matter.uniform_extinction().is_some(),
+        long: end.is_finite() && matter.uniform_extinction().is_some(),
     }
 }
 

@@ -100,6 +100,12 @@ impl World {
         self.light_surroundings.get(light).copied().unwrap_or_default()
     }
 
+    /// Whether a medium ends at a surface that light passes.
+    pub(crate) fn ends_medium(&self, hit: &Hit) -> bool {
+        let boundary = &self.surfaces[hit.shape as usize].boundary;
+        boundary.is_some_and(|b| b.interior != b.exterior) && self.may_pass(hit)
+    }
+
     /// What a path is in that leaves a surface along `direction`, having come along `before`: what it was
     /// in, but where it crossed a surface that names media.
     #[inline]

@@ -188,7 +188,8 @@ impl World {
         None
     }
 
-    fn may_pass(&self, hit: &Hit) -> bool {
+    /// Whether light may go through a surface.
+    pub(super) fn may_pass(&self, hit: &Hit) -> bool {
         matches!(
             self.material_of(hit.shape),
             Material::Null | Material::Dielectric { .. } | Material::ThinDielectric { .. }

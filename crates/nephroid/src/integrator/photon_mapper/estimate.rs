@@ -1,5 +1,6 @@
 //! The camera side of photon mapping: from a camera ray to radiance.
 
+mod equiangular;
 mod gather_rays;
 mod in_scatter;
 mod march;
@@ -38,15 +39,15 @@ struct Tools<'t, P> {
 struct Way {
     ray: Ray,
     inside: Surroundings,
+    /// Whether it begins where another medium ends.
+    entered: bool,
 }
 
 impl Way {
     /// Onward from a surface that it met.
     fn pass(&self, world: &World, hit: &Hit, direction: Vec3) -> Self {
-        Self {
-            ray: leave(&hit.point, direction),
-            inside: world.cross(self.inside, hit, self.ray.direction, direction),
-        }
+        let inside = world.cross(self.inside, hit, self.ray.direction, direction);
+        Self { ray: leave(&hit.point, direction), inside, entered: inside.medium() != self.inside.medium() }
     }
 }
 
@@ -165,7 +166,8 @@ impl<'a> PhotonMapper<'a> {
             let hit = self.world.intersect(&way.ray);
             if let Some(matter) = self.world.matter(way.inside) {
                 let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth };
+                let open = [way.entered, hit.is_some_and(|hit| self.world.ends_medium(&hit))];
+                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth, open };
                 let samples = if sample.index.is_multiple_of(self.stride) { self.stride } else { 0 };
                 let (seen, through) = self.through_medium(&segment, samples, &mut sample.sampler, tools);
                 out.medium += throughput * seen;
@@ -348,7 +350,7 @@ impl Estimator for PhotonMapper<'_> {
         probe: &mut P,
     ) -> Components {
         let mut out = Components::default();
-        let way = Way { ray: sample.ray, inside: self.world.camera_surroundings() };
+        let way = Way { ray: sample.ray, inside: self.world.camera_surroundings(), entered: false };
         self.trace(way, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
         out
     }

@@ -104,7 +104,8 @@ impl PhotonMapper<'_> {
         let Some((direction, mut throughput)) = start_gather(vertex, guide, sampler) else {
             return found;
         };
-        let before = Way { ray: Ray::new(vertex.point().position, -vertex.wo), inside: vertex.inside };
+        let before =
+            Way { ray: Ray::new(vertex.point().position, -vertex.wo), inside: vertex.inside, entered: false };
         let mut way = before.pass(self.world, vertex.hit, direction);
         // The share that a glossy lobe has in the last surface's reflection: through it caustics are seen
         // as they are, and the rest of that surface has them by its afterglow.
@@ -116,7 +117,8 @@ impl PhotonMapper<'_> {
             let hit = self.world.intersect(&way.ray);
             if let Some(matter) = self.world.matter(way.inside) {
                 let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth };
+                let open = [way.entered, hit.is_some_and(|hit| self.world.ends_medium(&hit))];
+                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth, open };
                 if sharp.is_black() {
                     throughput *= matter.transmittance(&way.ray, end, sampler);
                 } else {

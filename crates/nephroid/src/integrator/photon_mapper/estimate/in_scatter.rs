@@ -1,13 +1,15 @@
 //! What a medium sends back along a ray: light scattered once, found by rays to the lights, and all other, found by
 //! photons along the way.
 
+use super::equiangular::Equiangular;
 use super::{DirectSource, PhotonMapper, Tools};
 use crate::color::Rgb;
 use crate::integrator::photon_mapper::VolumeIndex;
 use crate::integrator::photon_mapper::config::VolumeEstimate;
 use crate::integrator::{LightPart, Probe};
-use crate::math::{Ray, Vec3, real};
+use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Profile};
+use crate::photon_map::Beam;
 use crate::sampling::Sampler;
 use crate::transport::{DirectLights, Fog, Lit, Partner, Scatterer, one_light};
 use crate::world::Surroundings;
@@ -21,6 +23,9 @@ pub(super) struct Segment<'a> {
     pub inside: Surroundings,
     /// Segments from the lens to its end.
     pub depth: u32,
+    /// Whether it begins and ends where nothing but the medium does. A photon near such an end is seen beside it and
+    /// counts in full, else the medium would be dark at its sides.
+    pub open: [bool; 2],
 }
 
 impl Segment<'_> {
@@ -103,15 +108,17 @@ impl PhotonMapper<'_> {
         probability: f32,
         sampler: &mut Sampler,
     ) -> Rgb {
+        let emitter = &self.world.emitters()[light];
         let (u, u_technique) = (sampler.next_1d(), sampler.next_1d());
-        let around = self.world.emitters()[light].middle().map(|c| Equiangular::new(segment, c));
+        let Some([from, to]) = emitter.lit_part(segment.ray, segment.end) else { return Rgb::BLACK };
+        let around = emitter.middle().map(|center| Equiangular::new(segment.ray, from, to, center));
         let by_angle = if around.is_some() { 0.5 } else { 0.0 };
         let t = match &around {
-            Some(around) if u_technique < by_angle => around.sample(u),
-            _ => profile.sample(u, 0.0, segment.end),
+            Some(around) if u_technique < by_angle => around.sample(u).clamp(from, to),
+            _ => profile.sample(u, from, to),
         };
         let pdf = by_angle * around.map_or(0.0, |around| around.pdf(t))
-            + (1.0 - by_angle) * profile.pdf(t, 0.0, segment.end);
+            + (1.0 - by_angle) * profile.pdf(t, from, to);
         let position = segment.ray.at(t);
         let weight = profile.transmittance(t) * segment.scattering(position) / pdf;
         if pdf <= 0.0 || weight.is_black() || !weight.is_finite() {
@@ -138,10 +145,14 @@ impl PhotonMapper<'_> {
             VolumeIndex::Points(map) if map.is_empty() => {}
             VolumeIndex::Points(map) => match self.config.volume_estimate {
                 VolumeEstimate::Beam => {
-                    map.along(segment.ray, segment.end, segment.medium(), kernel, |t, photon, weight| {
+                    let margin = map.default_max_radius_in(segment.medium(), self.config.volume_neighbours());
+                    let [before, beyond] = segment.open.map(|open| if open { margin } else { 0.0 });
+                    let ray = Ray::new(segment.ray.at(-before), segment.ray.direction);
+                    let length = before + segment.end + beyond;
+                    map.along(&ray, length, segment.medium(), kernel, |t, photon, weight| {
                         if self.fits(segment.depth + u32::from(photon.depth)) {
                             let scattered = photon.power * (phase.eval(wo, photon.wi) * weight);
-                            sum += profile.transmittance(t) * scattered;
+                            sum += profile.transmittance((t - before).clamp(0.0, segment.end)) * scattered;
                         }
                     });
                 }
@@ -151,7 +162,7 @@ impl PhotonMapper<'_> {
             VolumeIndex::Beams(map) => {
                 map.along(segment.ray, segment.end, segment.medium(), kernel, |t, s, beam, weight| {
                     if self.fits(segment.depth + u32::from(beam.depth)) {
-                        let reached = if beam.long { segment.matter.attenuation(s) } else { Rgb::WHITE };
+                        let reached = reached(segment.matter, beam, s);
                         let scattered = segment.scattering(segment.ray.at(t)) * beam.power * reached;
                         sum +=
                             profile.transmittance(t) * scattered * (phase.eval(wo, -beam.direction) * weight);
@@ -163,38 +174,13 @@ impl PhotonMapper<'_> {
     }
 }
 
-/// Distances along a ray by equal angles, seen from a point.
-struct Equiangular {
-    /// Where the ray is nearest to the point.
-    nearest: f32,
-    distance: f32,
-    angles: [f32; 2],
-}
-
-impl Equiangular {
-    fn new(segment: &Segment<'_>, point: Vec3) -> Self {
-        let ray = segment.ray;
-        let to_point = point - ray.origin;
-        let nearest = to_point.dot(ray.direction);
-        // A point on the ray is taken for one beside it, by what rounding leaves of its place.
-        let distance = (to_point - ray.direction * nearest).length().max(1e-4 * to_point.length());
-        let angle = |t: f32| real::atan2(t - nearest, distance);
-        let angles = [
-            angle(0.0),
-            if segment.end.is_finite() { angle(segment.end) } else { 0.5 * std::f32::consts::PI },
-        ];
-        Self { nearest, distance, angles }
+/// The share of a beam's power that is left after so long a way, over the chance that the beam is so long.
+fn reached(matter: &Matter, beam: &Beam, s: f32) -> Rgb {
+    let left = matter.attenuation(s);
+    if beam.long {
+        return left;
     }
-
-    fn sample(&self, u: f32) -> f32 {
-        let [a, b] = self.angles;
-        (self.nearest + self.distance * real::tan(a + (b - a) * u)).max(0.0)
-    }
-
-    /// Density per length.
-    fn pdf(&self, t: f32) -> f32 {
-        let [a, b] = self.angles;
-        let from_nearest = t - self.nearest;
-        self.distance / ((b - a) * (self.distance * self.distance + from_nearest * from_nearest))
-    }
+    // It ended where light collided that one of the channels was chosen for, by what it carries.
+    let chance = (beam.power * left).sum() / beam.power.sum();
+    if chance > 0.0 { left / chance } else { Rgb::BLACK }
 }
