@@ -23,7 +23,7 @@ pub struct PhotonsArgs {
     /// What colours tell in the picture: map, bounce, light, power
     #[arg(long, value_name = "WHAT", default_value = "map", value_parser = color)]
     pub color: PhotonColor,
-    /// Maps whose photons to take: global, caustic, afterglow
+    /// Maps whose photons to take: global, caustic, afterglow, haze
     #[arg(long, value_name = "MAP,…", value_delimiter = ',', default_value = "global,caustic", value_parser = map)]
     pub maps: Vec<MapName>,
     /// Diameter of a photon in the picture, in pixels
@@ -53,7 +53,7 @@ pub struct InspectArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// photonmapper, path, or scene for the one the scene asks for
+    /// photonmapper, path (surfaces only), volpath, or scene for the one the scene asks for
     #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
     pub integrator: Option<Integrator>,
     /// Camera samples of each pixel, in all, as of the render

@@ -1,5 +1,5 @@
-//! Photon mapping: a renderer for caustics, for light through glass and water, and for all light that
-//! bounces between surfaces.
+//! Photon mapping: a renderer for caustics, for light through glass and water, in fog and smoke, and for all
+//! light that bounces between surfaces.
 //!
 //! A [`scene::Scene`] is plain data. [`world::World::new`] checks it, names everything that is wrong
 //! with it, and prepares it; after that rendering cannot fail. A [`session::Session`] renders a world
@@ -36,7 +36,7 @@
 //! | watching and stopping a render | [`observer::Observer`] |
 //! | pictures, filters, tone mapping | [`film`] |
 //! | the photons of a render, and what a pixel saw | [`laboratory`] |
-//! | photons by themselves | [`photon_map`], [`transport::photon_pass`] |
+//! | photons by themselves | [`photon_map`], [`transport::photon_pass`], [`transport::volume_pass`] |
 //! | vectors and transforms | [`math`], which re-exports glam's |
 //!
 //! Scenes in files, and files of pictures, are read and written by the crate `nephroid-formats`; this
@@ -50,7 +50,7 @@
 //! - Colours are linear RGB with the primaries of sRGB.
 //! - No length is built in: a scene scaled by a power of two gives the same picture.
 //!
-//! Participating media, rough metals and glass and depth of field are not there yet.
+//! Rough metals and glass, spectra and motion blur are not there yet.
 
 mod bvh;
 pub mod camera;

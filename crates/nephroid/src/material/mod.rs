@@ -125,7 +125,7 @@ impl Material {
     /// # Panics
     ///
     /// If a handle is not of these arenas. A two-sided material that contains itself never returns.
-    /// [`check`] finds both.
+    /// [`check()`] finds both.
     pub fn at(
         materials: &Arena<Self>,
         material: Handle<Self>,

@@ -8,7 +8,7 @@ use crate::sampling::{Key, Stream};
 ///
 /// - Directions lie on an octahedron folded out to a square (Cigolle et al. 2014, *A Survey of Efficient
 ///   Representations for Independent Unit Vectors*, JCGT 3(2)), whose coordinates have 16 bits. They are
-///   off by at most [`MAX_ANGLE`]; directions along the axes are exact.
+///   off by at most 6.5·10⁻⁵ rad; directions along the axes are exact.
 /// - Power is three mantissas of 8 bits and an exponent for all of them (after Ward 1991, *Real
 ///   Pixels*, Graphics Gems II). Each is rounded up or down by chance, such that the *mean* is exact: rounded
 ///   always to the nearest, a light whose photons all carry the same power would come out up to 0.4 %

@@ -8,7 +8,8 @@ pub enum Stream {
     GlobalPhotons = 2,
     /// Photon paths that fill the caustic map.
     CausticPhotons = 3,
-    /// Trial photon paths that count how many photons a path stores.
+    /// Trial photon paths that count how many photons a path stores, and other trials before a render: of what
+    /// lights send where, of what media give off, of what cameras and lamps are in.
     Pilot = 4,
     /// Whether a ray meets a masked surface.
     Masks = 5,

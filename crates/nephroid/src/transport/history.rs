@@ -7,14 +7,16 @@ use super::roulette::effort;
 /// photon lies: D on a surface, V in a medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhotonKind {
-    /// L D and L V: belongs to next event estimation, unless direct light comes from the map.
+    /// L D and L V: belongs to next event estimation, unless direct light, or light scattered once, comes from
+    /// the map.
     Direct,
     /// L S+ D and L S+ V: the caustic maps'.
     Caustic,
     /// L S+ D S* D: a caustic's light after one more bounce. The global map's, and known apart, since
     /// gather rays do not bring it.
     Afterglow,
-    /// V S* D and, from a medium that gives it off, L S* D: light from a medium. The global map's, and known apart for the same reason.
+    /// V S* D and, from a medium that gives it off, L S* D: light from a medium. The global map's, and known
+    /// apart for the same reason.
     Haze,
     /// All the rest: the global map's, or that of the volume.
     Global,

@@ -64,7 +64,7 @@ pub struct RecordedPhoton {
     pub bounces: Bounces,
 }
 
-/// The photons of one iteration, each list in the order in which [`photon_pass`](super::photon_pass) has it.
+/// The photons of one iteration, each list in the order in which [`photon_pass`](super::photon_pass()) has it.
 #[derive(Clone, Debug)]
 pub struct RecordedPass {
     /// Those of the global map.
@@ -97,7 +97,7 @@ impl Trail {
     }
 }
 
-/// Emits the same paths as [`photon_pass`](super::photon_pass), since all that is random in them is keyed, and keeps what is
+/// Emits the same paths as [`photon_pass`](super::photon_pass()), since all that is random in them is keyed, and keeps what is
 /// known of each photon. `None` if the observer cancelled.
 pub fn record_photon_pass(
     world: &World,

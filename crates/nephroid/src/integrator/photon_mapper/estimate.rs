@@ -270,7 +270,7 @@ impl<'a> PhotonMapper<'a> {
                 out.global += throughput * global;
             }
         }
-        // Light of media comes straight to it, too, and nowhere else.
+        // Light that media give off is none of direct light's, though it may come straight here, by one segment.
         let straight = u32::from(self.world.glows());
         if shows_global && self.fits(vertex.depth + 2 - straight) {
             let (bsdf, most) = match self.gather_rays {

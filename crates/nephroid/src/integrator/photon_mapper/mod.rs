@@ -1,6 +1,7 @@
 //! Two-pass photon mapping (Jensen 1996, 2001; the report's §2 in its corrected form): photons from
-//! the lights into a global and a caustic map
-//! (and one of the light of caustics a bounce later), and in media into maps of their own, then camera paths that estimate radiance from them.
+//! the lights into a global and a caustic map (and where gather rays are sent one of the light of caustics a
+//! bounce later, and one of the light of media), and in media into maps of their own, then camera paths that
+//! estimate radiance from them.
 
 mod config;
 mod estimate;

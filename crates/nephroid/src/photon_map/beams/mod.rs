@@ -32,8 +32,8 @@
 //!
 //! The weight grows beyond bounds as sin θ → 0. Its mean is right, and for beams of all directions its
 //! variance is finite: the mean of 1/sin θ over the sphere makes it π/2 times that of beams at right angles.
-//! But weights beyond w come in proportion to w⁻³, and the third moment is infinite: such are fireflies. And a ray exactly along a bundle,
-//! as a parallel projection along a parallel light has it, would find nothing. So pairs with sin θ < τ are
+//! But weights beyond w come in proportion to w⁻³, and the third moment is infinite: such are fireflies. And a
+//! ray exactly along a bundle, as a parallel projection along a parallel light has it, would find nothing. So pairs with sin θ < τ are
 //! estimated with a kernel of *two* dimensions, Beam × Beam 2D: the beam is a cylinder with the density
 //! K₂(distance from its axis), whose integral over the stretch of the ray inside is estimated with one
 //! point of the stretch. Its mean is the same ρ L t_max for beams of any one direction, so a choice by the angle

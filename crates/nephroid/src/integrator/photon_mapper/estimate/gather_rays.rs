@@ -89,8 +89,8 @@ impl PhotonMapper<'_> {
 
     /// One gather ray: on over specular surfaces to the first that is not, whose direct and global light
     /// it brings home, and its caustics as far as it was sent by a glossy lobe: the others come by
-    /// [`Self::afterglow`]. Emission on the way is direct light's
-    /// and the caustic map's.
+    /// [`Self::unseen`], and so does what media send to the surface that it left. Of those on its way it brings only
+    /// a glossy lobe's share. Emission on the way is direct light's and the caustic map's.
     /// Where that surface is nearer than the map can resolve, a ray goes on from it in place of the
     /// look-up; corners stay as bright as they are.
     pub(super) fn gather_ray<P: Probe>(
