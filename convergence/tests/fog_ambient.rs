@@ -69,7 +69,7 @@ fn expect_every_pixel(image: &Image, expected: impl Fn(usize) -> f64, bound: f64
     }
 }
 
-/// A15: where L_i σ_s/σ_t is what everything around gives off, fog changes nothing: the picture is constant, near walls
+/// Where L_i σ_s/σ_t is what everything around gives off, fog changes nothing: the picture is constant, near walls
 /// and far ones, in a room and without one.
 #[test]
 fn ambient_fog_as_bright_as_what_is_behind_it_is_not_seen() {
@@ -89,7 +89,7 @@ fn ambient_fog_as_bright_as_what_is_behind_it_is_not_seen() {
     }
 }
 
-/// E16: a lamp E seen over a distance d: E e^(−σ_t d) + L_i σ_s/σ_t (1 − e^(−σ_t d)).
+/// A lamp E seen over a distance d: E e^(−σ_t d) + L_i σ_s/σ_t (1 − e^(−σ_t d)).
 #[test]
 fn a_lamp_fades_into_ambient_fog() {
     let radiance = Rgb::new(3.0, 1.0, 7.0);
@@ -155,7 +155,7 @@ fn light_is_attenuated_on_its_way_to_a_floor() {
     }
 }
 
-/// E17: photons lose as much on the way, and the books have it as absorbed by media: from the middle of a ball with a
+/// Photons lose as much on the way, and the books have it as absorbed by media: from the middle of a ball with a
 /// wall of albedo 0, all of the rest is on the wall.
 #[test]
 fn photons_lose_in_ambient_fog_what_the_books_say() {

@@ -54,8 +54,8 @@ fn book(world: &World, settings: &WalkSettings, paths: u64, seed: u64) -> Balanc
     ledger.lights[0]
 }
 
-/// A14: a share 1 − e^(−τ) is absorbed, .632121 for τ = 1. With a second random number against e^(−τ) after
-/// the distance was sampled (E14) it would be half of that, or .1998 if both must agree. In grey media each path
+/// A share 1 − e^(−τ) is absorbed, .632121 for τ = 1. With a second random number against e^(−τ) after
+/// the distance was sampled it would be half of that, or .1998 if both must agree. In grey media each path
 /// is absorbed or not, so that the share is binomial.
 #[test]
 fn an_absorbing_medium_takes_what_beer_and_lambert_say() {
@@ -94,7 +94,7 @@ fn every_channel_has_its_own_extinction() {
     }
 }
 
-/// E17: ambient fog takes from photons without noise, and the books say so.
+/// Ambient fog takes from photons without noise, and the books say so.
 #[test]
 fn ambient_fog_books_what_it_takes() {
     let tau = Rgb::new(0.5, 1.0, 2.0);
@@ -130,7 +130,7 @@ fn uneven(b: &mut Builder) -> Coefficient {
     b.grid(-DVec3::ONE, DVec3::ONE, [4; 3], GridValues::Grey(values))
 }
 
-/// A19: in a closed room, all that is emitted is absorbed, by walls and by the medium, in every channel; nothing
+/// In a closed room, all that is emitted is absorbed, by walls and by the medium, in every channel; nothing
 /// escapes or is cut off.
 #[test]
 fn closed_rooms_absorb_all_that_is_emitted() {

@@ -34,7 +34,7 @@ fn grosjean(albedo: f64, r: f64) -> f64 {
     libm::exp(-r) / (4.0 * PI * r * r) + scattered
 }
 
-/// A18: what is scattered in a shell is σ_s times the fluence there, σ_s ∫ φ dV; photons carry what is scattered (E13).
+/// What is scattered in a shell is σ_s times the fluence there, σ_s ∫ φ dV; photons carry what is scattered.
 /// With mean free paths of half a metre, so that a length that is forgotten shows.
 #[test]
 fn the_fluence_around_a_point_is_grosjeans() {
@@ -130,7 +130,7 @@ fn chandrasekhars_function_has_the_values_of_the_tables() {
     assert!((H::new(0.9).plane_albedo(1.0) - 0.415).abs() < 1e-3, "{}", H::new(0.9).plane_albedo(1.0));
 }
 
-/// A20: the share of the photons' power that escapes from a half space is its plane albedo.
+/// The share of the photons' power that escapes from a half space is its plane albedo.
 #[test]
 fn half_spaces_send_back_their_plane_albedo() {
     let settings = WalkSettings { aim: false, ..WalkSettings::default() };

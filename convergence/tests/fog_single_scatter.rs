@@ -79,7 +79,7 @@ fn passing_ray_exactly(sigma_t: f64) -> f64 {
     integrate(in_x, &[0.0, 0.5, 0.9, 1.0], Tolerance::relative(1e-10)).value
 }
 
-/// A17: σ_t = 1, .5 and .1 in one picture, with and without bounds.
+/// σ_t = 1, .5 and .1 in one picture, with and without bounds.
 #[test]
 fn a_point_light_is_scattered_into_a_ray_that_passes_it() {
     let sigma_t = [1.0f32, 0.5, 0.1];
@@ -120,7 +120,7 @@ fn fog_without_bounds_may_leave_a_channel_alone() {
     }
 }
 
-/// A16: where next to nothing is taken, σ_s I (π−γ)/(4π D sin γ) = .0962250 σ_s; what 10⁻⁵ takes is below 10⁻³.
+/// Where next to nothing is taken, σ_s I (π−γ)/(4π D sin γ) = .0962250 σ_s; what 10⁻⁵ takes is below 10⁻³.
 #[test]
 fn thin_fog_scatters_what_the_angle_says() {
     const SIGMA: f32 = 1e-5;
@@ -195,7 +195,7 @@ fn views() -> impl Iterator<Item = (String, PhotonMapperConfig)> {
     })
 }
 
-/// A17 with every estimator and every kernel. Over the plane across its rays, a kernel integrates to one, so that the mean
+/// With every estimator and every kernel. Over the plane across its rays, a kernel integrates to one, so that the mean
 /// of a picture knows of blur only what passes its sides: that is below 1 % here. The march looks around points, where
 /// k photons in front of a light of no size see less than the middle of the ball: 3 % are forgiven. Beams end where they
 /// have gone across the scene, so that they are asked only where it has bounds.
@@ -224,7 +224,7 @@ fn every_estimator_and_kernel_brings_light_scattered_once() {
     }
 }
 
-/// A32: the same light, scattered mostly forward, mostly backward and as by small things.
+/// The same light, scattered mostly forward, mostly backward and as by small things.
 #[test]
 fn phase_functions_count_for_every_estimator() {
     const SIGMA: f64 = 1.0;

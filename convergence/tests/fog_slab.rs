@@ -80,7 +80,7 @@ fn samples_for(name: &str) -> u32 {
     if ["rays", "volpath"].contains(&name) { 64 } else { 4 }
 }
 
-/// A32: channels that differ, by Henyey and Greenstein's function, from both sides.
+/// Channels that differ, by Henyey and Greenstein's function, from both sides.
 #[test]
 fn a_slab_in_parallel_light_has_its_closed_form() {
     let (sigma_t, albedo) = ([0.4f32, 1.0, 2.5], [0.9f32, 0.6, 0.8]);
@@ -179,7 +179,7 @@ fn block(sigma_t: f32) -> World {
     b.build()
 }
 
-/// E15: with steps of optical depth τ the report's march is too bright by τ/(1 − e^(−τ)), which is 1.27 at .5 and 1.58 at
+/// With steps of optical depth τ the report's march is too bright by τ/(1 − e^(−τ)), which is 1.27 at .5 and 1.58 at
 /// 1; neither the march that samples each step by transmittance nor the beam estimate is. Light is taken at the near
 /// end of each step, and is the same everywhere but where the block ends, of which e^(−4) and less is seen: 4 % of bias are
 /// forgiven, for that and for the blur of what falls off downwards.

@@ -98,7 +98,7 @@ fn every_variant_has_the_closed_form() {
     }
 }
 
-/// A3 over albedos, up to one for which a limit of 20 bounces would lose 36 % (E7).
+/// Over albedos, up to one for which a limit of 20 bounces would lose 36 %.
 #[test]
 fn every_albedo_has_the_closed_form() {
     for albedo in [0.5f32, 0.9, 0.95] {
@@ -109,7 +109,7 @@ fn every_albedo_has_the_closed_form() {
     }
 }
 
-/// The Gaussian of 1996 as it was published loses a known 46.9 % (E10), and nothing but that.
+/// The Gaussian of 1996 as it was published loses a known 46.9 %, and nothing but that.
 #[test]
 fn the_gaussian_of_1996_is_as_dark_as_it_is_known_to_be() {
     let config = PhotonMapperConfig {
@@ -152,7 +152,7 @@ fn direct_over_indirect_light_is_as_the_albedo_says() {
     }
 }
 
-/// A5: with paths of at most n segments, light has met the wall n − 1 times at most.
+/// With paths of at most n segments, light has met the wall n − 1 times at most.
 #[test]
 fn limits_of_depth_cut_the_series_where_they_say() {
     let world = furnace(0.7);
@@ -163,7 +163,7 @@ fn limits_of_depth_cut_the_series_where_they_say() {
     }
 }
 
-/// E6: roulette by one number for three channels takes nothing from any of them.
+/// Roulette by one number for three channels takes nothing from any of them.
 #[test]
 fn roulette_is_fair_to_every_colour() {
     let albedo = [0.9f32, 0.4, 0.1];
@@ -189,7 +189,7 @@ fn roulette_is_fair_to_every_colour() {
     }
 }
 
-/// E4: lights of different strength, however they and their directions are chosen, add up.
+/// Lights of different strength, however they and their directions are chosen, add up.
 #[test]
 fn lights_add_up_however_they_are_chosen() {
     let mut b = sphere(Rgb::splat(0.5));
@@ -229,7 +229,7 @@ fn a_glowing_wall_has_the_closed_form() {
     }
 }
 
-/// A10: two parallel plates without end that emit M₁, M₂ and reflect ρ₁, ρ₂ give off
+/// Two parallel plates without end that emit M₁, M₂ and reflect ρ₁, ρ₂ give off
 /// B₁ = (M₁ + ρ₁ M₂)/(1 − ρ₁ρ₂). Mirrors around a piece of them stand for the rest, so that most of
 /// the light takes paths with specular surfaces in it, which no estimator may lose or count twice.
 #[test]

@@ -144,7 +144,7 @@ fn film(world: &World, method: Method, seed: u64) -> Film {
     session(world, method, 6, seed).film().clone()
 }
 
-/// A29: scales by powers of two change no bit.
+/// Scales by powers of two change no bit.
 #[test]
 fn scales_by_powers_of_two_change_no_bit() {
     let unit = room(1.0, Transform::IDENTITY);
@@ -159,7 +159,7 @@ fn scales_by_powers_of_two_change_no_bit() {
     }
 }
 
-/// A29: other scales, turns and moves change nothing but the noise. The moves go a few hundred
+/// Other scales, turns and moves change nothing but the noise. The moves go a few hundred
 /// times as far as the room is wide.
 #[test]
 fn scales_turns_and_moves_change_only_the_noise() {

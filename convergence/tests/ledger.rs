@@ -182,7 +182,7 @@ fn flux_by_photons(world: &World, light_choice: LightChoice, seeds: std::ops::Ra
     tests
 }
 
-/// E4: photons of every kind of light are worth what rays to it say.
+/// Photons of every kind of light are worth what rays to it say.
 #[test]
 fn photons_and_rays_agree_on_every_kind_of_light() {
     for (name, add) in KINDS {
@@ -194,7 +194,7 @@ fn photons_and_rays_agree_on_every_kind_of_light() {
     }
 }
 
-/// E4, all kinds in one scene: the choice among them favours none, for photons and for rays.
+/// All kinds in one scene: the choice among them favours none, for photons and for rays.
 #[test]
 fn photons_and_rays_agree_on_all_lights_together() {
     let mut b = square();
@@ -234,7 +234,7 @@ fn lights_emit_the_power_that_they_say() {
     }
 }
 
-/// A19 in the open: every light's books balance, with all kinds of surfaces and a limit of depth.
+/// In the open: every light's books balance, with all kinds of surfaces and a limit of depth.
 #[test]
 fn the_books_of_every_light_balance() {
     let mut b = square();
@@ -266,7 +266,7 @@ fn the_books_of_every_light_balance() {
     }
 }
 
-/// A19 in a closed room: nothing escapes, and all is absorbed that roulette did not take.
+/// In a closed room: nothing escapes, and all is absorbed that roulette did not take.
 #[test]
 fn a_closed_room_absorbs_what_its_lights_emit() {
     let mut b = Builder::seen_from(Vec3::new(0.0, 0.0, 0.5), Vec3::ZERO, 40.0, 1);

@@ -57,7 +57,7 @@ fn power<'a>(pass: &PhotonPass, photons: impl IntoIterator<Item = &'a Photon>) -
     sum.map(|s| s / pass.global.emitted() as f64)
 }
 
-/// A2: a light of intensity I at height h sends 2πI(1 − h/√(h² + R²)) into the disc of radius R
+/// A light of intensity I at height h sends 2πI(1 − h/√(h² + R²)) into the disc of radius R
 /// below it; as a share of 4πI, the probability that a photon lands there.
 fn disc_share(h: f64, radius: f64) -> f64 {
     0.5 * (1.0 - h / sqrt(h * h + radius * radius))
@@ -142,7 +142,7 @@ fn closed_room(albedo: Rgb, intensity: Rgb) -> World {
     b.build()
 }
 
-/// A5: the flux that arrives after n bounces is Φρⁿ. As roulette keeps the power of photons, they are
+/// The flux that arrives after n bounces is Φρⁿ. As roulette keeps the power of photons, they are
 /// there with probability ρⁿ: an exact binomial test for each n.
 #[test]
 fn flux_falls_geometrically_with_every_bounce() {
@@ -161,7 +161,7 @@ fn flux_falls_geometrically_with_every_bounce() {
     }
 }
 
-/// E6: in colour the number of photons is roulette's business, but the flux of every channel after n
+/// In colour the number of photons is roulette's business, but the flux of every channel after n
 /// bounces is its own Φρⁿ, whatever the others do.
 #[test]
 fn flux_of_every_colour_falls_by_its_own_albedo() {
@@ -195,7 +195,7 @@ fn limits_of_depth_hold_for_photons() {
     }
 }
 
-/// E26: the caustic map gets L S+ D and nothing else. A mirror faces a matt floor, and light reaches the
+/// The caustic map gets L S+ D and nothing else. A mirror faces a matt floor, and light reaches the
 /// floor directly, by the mirror, and by floor and mirror (L D S D, which is the global map's).
 #[test]
 fn caustic_photons_met_specular_surfaces_and_no_other() {
@@ -239,7 +239,7 @@ fn the_two_maps_add_up_to_all_light() {
     judge("flux", &total.within(4.0 * PI / (1.0 - 0.6), ROUNDING));
 }
 
-/// E25: photons from inside a glass ball come out with the power they had, and all of them do.
+/// Photons from inside a glass ball come out with the power they had, and all of them do.
 #[test]
 fn power_is_the_same_outside_glass() {
     for light in [Vec3::ZERO, Vec3::new(0.2, 0.1, 0.0)] {

@@ -119,7 +119,7 @@ fn thin_glass_vanishes_in_every_pixel() {
     }
 }
 
-/// A28 (E25): radiance is n² times as large in a medium of index n, and 1 again behind it.
+/// Radiance is n² times as large in a medium of index n, and 1 again behind it.
 #[test]
 fn radiance_is_n_squared_inside_glass() {
     for n in [1.33f32, 1.5, 2.4] {
@@ -133,7 +133,7 @@ fn radiance_is_n_squared_inside_glass() {
     }
 }
 
-/// A28 in a closed room: a wall that emits ½ and reflects ½ has radiance 1 everywhere, and a glass
+/// In a closed room: a wall that emits ½ and reflects ½ has radiance 1 everywhere, and a glass
 /// ball in the room changes nothing of that but the n² inside it. Photons cross the ball as they are,
 /// whereas radiance is scaled.
 #[test]

@@ -89,7 +89,7 @@ fn level(power: Rgb, level: f32, u: f32) -> Rgb {
     }
 }
 
-/// A uniform direction by rejection (item 8 of the report, with the normalisation of E3): points of
+/// A uniform direction by rejection (the report's §2.1.1, but normalised): points of
 /// the cube until one lies in the ball and not so near its centre that its direction is rounding.
 fn rejection_sphere(sampler: &mut Sampler) -> Vec3 {
     loop {

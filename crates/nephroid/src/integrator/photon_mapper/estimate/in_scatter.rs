@@ -57,7 +57,9 @@ impl PhotonMapper<'_> {
             return (Rgb::BLACK, through);
         }
         if self.config.fog == Fog::Ambient {
-            return (self.ambient(segment, through), through);
+            let seen = self.ambient(segment, through);
+            tools.probe.light(LightPart::Medium, seen);
+            return (seen, through);
         }
         let mut seen = Rgb::BLACK;
         if matter.emits() {

@@ -49,7 +49,7 @@ impl PhotonMapper<'_> {
         sum
     }
 
-    /// L(x_k) = σ_s L_i Δx + e^(−σ_t Δx) L(x_(k−1)), from the far end (item 60 of the report).
+    /// L(x_k) = σ_s L_i Δx + e^(−σ_t Δx) L(x_(k−1)), from the far end (the report's §3.1).
     pub(super) fn march_report<P: Probe>(
         &self,
         map: &VolumeMap,
