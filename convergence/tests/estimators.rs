@@ -47,8 +47,8 @@ fn scene() -> World {
 /// Eleven renders, each the mean irradiance of the window over what the photons on the square amount to,
 /// evenly spread: their number is a matter of chance that has nothing to do with kernels.
 ///
-/// Estimates are exact in the mean: of k − 1 neighbours because the k-th photon only sets the radius
-///, r ≤ .1 being at twice what holds k, and of a fixed radius anyway.
+/// Estimates are exact in the mean: of k − 1 neighbours because the k-th photon only sets the radius,
+/// r ≤ .1 being at twice what holds k, and of a fixed radius anyway.
 fn irradiance(world: &World, kernel: Kernel, radius: Option<f32>) -> MeanTest {
     // Sent everywhere, so that their number is their share of the light.
     let config = PhotonMapperConfig { aim: false, ..map_view(Show::Direct, 150_000) };
