@@ -13,6 +13,7 @@ mod inspect_text;
 mod lab_args;
 mod layers;
 mod load;
+mod media_flags;
 mod method;
 mod output;
 mod parameters;

@@ -8,6 +8,7 @@ mod integrators;
 mod laboratory;
 mod layers;
 mod limits;
+mod media_flags;
 mod outputs;
 mod pictures;
 mod scenes;
