@@ -2,9 +2,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::integrator::{Components, FromVolume, LightPart};
-use nephroid::laboratory::{
-    Contribution, InspectedSample, LookUpReport, MediumPassed, RayLight, SurfaceMet,
-};
+use nephroid::laboratory::{Contribution, InspectedSample, LookUpReport, MediumPassed, RayLight, SurfaceMet};
 use serde_json::{Value, json};
 
 use crate::info::{short, vector};

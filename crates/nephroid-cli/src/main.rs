@@ -7,6 +7,7 @@ mod console;
 mod exit;
 mod fault;
 mod info;
+mod info_media;
 mod inspect;
 mod inspect_json;
 mod inspect_text;

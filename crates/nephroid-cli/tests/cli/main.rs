@@ -9,6 +9,7 @@ mod laboratory;
 mod layers;
 mod limits;
 mod media_flags;
+mod media_laboratory;
 mod outputs;
 mod pictures;
 mod scenes;

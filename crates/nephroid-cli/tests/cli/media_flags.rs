@@ -10,7 +10,7 @@ fn foggy(parameters: &str) -> Dir {
     let room = r#"<boolean name="flip_normals" value="true"/></shape>"#;
     let ours = r#"<integer name="photons" value="300"/>"#;
     assert!(SCENE.contains(room) && SCENE.contains(ours));
-    let room_with_fog = room.replace("</shape>", fog);
+    let room_with_fog = room.replace("</shape>", &format!(r#"<bsdf type="diffuse"/>{fog}"#));
     let few = r#"<integer name="volume_photons" value="200"/><integer name="caustic_photons" value="9"/>"#;
     let scene = SCENE.replace(room, &room_with_fog).replace(ours, &format!("{ours}{few}{parameters}"));
     std::fs::write(dir.path("a.xml"), scene).unwrap();

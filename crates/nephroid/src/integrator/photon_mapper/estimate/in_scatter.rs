@@ -69,7 +69,13 @@ impl PhotonMapper<'_> {
             }
         }
         let medium = segment.inside.medium();
-        tools.probe.medium(&Passed { medium, length: end, depth: segment.depth, light, transmittance: through });
+        tools.probe.medium(&Passed {
+            medium,
+            length: end,
+            depth: segment.depth,
+            light,
+            transmittance: through,
+        });
         (light.total(), through)
     }
 
