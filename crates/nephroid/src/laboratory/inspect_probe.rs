@@ -13,8 +13,8 @@ use crate::medium::Medium;
 use crate::photon_map::{Gathered, Photon};
 use crate::transport::Bounces;
 
-/// One camera sample, and all that its estimate met. Lights and contributions of the whole sample add up to
-/// [`light`](Self::light), up to rounding.
+/// One camera sample, and all that its estimate met. Lights, contributions and what media bring, of the whole sample,
+/// add up to [`light`](Self::light), up to rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InspectedSample {
     /// The iteration it belongs to, from 0.
