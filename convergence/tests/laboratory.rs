@@ -105,7 +105,13 @@ fn told(sample: &InspectedSample) -> Components {
     let mut parts: BTreeMap<&str, Rgb> = BTreeMap::new();
     let contributions =
         sample.look_ups.iter().flat_map(|l| l.contributions.iter().map(|c| (c.part, c.radiance)));
-    for (part, radiance) in sample.rays.iter().map(|r| (r.part, r.radiance)).chain(contributions) {
+    // What gather rays find in media is light of the surface that they left.
+    let media = sample.media.iter().map(|passed| match passed.gather_ray {
+        None => (LightPart::Medium, passed.light.total()),
+        Some(_) => (LightPart::Global, passed.light.total()),
+    });
+    let rays = sample.rays.iter().map(|r| (r.part, r.radiance));
+    for (part, radiance) in rays.chain(contributions).chain(media) {
         let name = match part {
             LightPart::Emitted => "emitted",
             LightPart::Direct => "direct",
@@ -138,7 +144,7 @@ fn what_rays_and_photons_bring_adds_up_to_each_sample() {
             for sample in inspector.finish().samples {
                 let (told, light) = (told(&sample), sample.light);
                 let scale = light.total().max_channel();
-                for part in [LightPart::Emitted, LightPart::Direct, LightPart::Global, LightPart::Caustic] {
+                for part in LightPart::ALL {
                     let (told, light) = (told.part(part), light.part(part));
                     assert!(
                         close(told, light, scale),

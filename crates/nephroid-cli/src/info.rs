@@ -7,7 +7,6 @@ use nephroid::color::Rgb;
 use nephroid::film::Filter;
 use nephroid::material::Material;
 use nephroid::math::Vec3;
-use nephroid::medium::{Coefficient, Medium};
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::Texture;
@@ -18,6 +17,7 @@ use serde_json::{Map, Value, json};
 use crate::args::{InfoArgs, LimitArgs};
 use crate::console::{self, Messages};
 use crate::exit::{Exit, Failure};
+use crate::info_media;
 use crate::load;
 use crate::method;
 use crate::parameters::PhotonFlags;
@@ -30,7 +30,7 @@ pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(None, &file.integrator, &PhotonFlags::default(), &mut messages)?;
+    let method = method::choose(None, &file, &PhotonFlags::default(), &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
     let world = load::world(file.scene, &file.origins)?;
     for remark in &load::remarks(&world, &file.origins) {
@@ -39,15 +39,15 @@ pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     let mut about = json!({ "scene": args.scene.display().to_string() });
     about["film"] = film(world.scene());
     about["camera"] = camera(world.scene());
+    if world.has_media() {
+        about["camera"]["medium"] = info_media::name(world.scene(), world.camera_surroundings().medium());
+    }
     about["shapes"] = shapes(world.scene());
     about["primitives"] = json!(world.primitive_count());
     about["bounds"] = bounds(&world);
     about["materials"] = counted(world.scene().materials.iter().map(material));
     about["textures"] = counted(world.scene().textures.list.iter().map(texture));
-    if !world.scene().media.list.is_empty() {
-        about["media"] = counted(world.scene().media.list.iter().map(medium));
-        about["cells of grids"] = json!(cells(world.scene()));
-    }
+    info_media::add(&mut about, &world);
     about["lights"] = lights(&world);
     about["integrator of the scene"] = request(&file.integrator);
     about["integrator used"] = method::describe(&method);
@@ -148,22 +148,17 @@ fn texture(texture: &Texture) -> &'static str {
     }
 }
 
-fn medium(medium: &Medium) -> &'static str {
-    match medium.sigma_t {
-        Coefficient::Constant(_) => "homogeneous",
-        Coefficient::Grid { .. } => "heterogeneous",
-    }
-}
-
-/// How many cells the grids of all media have.
-fn cells(scene: &Scene) -> u64 {
-    scene.media.grids.iter().map(|grid| grid.size.iter().map(|side| u64::from(*side)).product::<u64>()).sum()
-}
-
 fn lights(world: &World) -> Value {
     let power =
         |power: Rgb| json!({ "power in W": power.to_array().map(short), "mean": short(power.mean()) });
-    world.lights().map(|(name, p)| json!({ "name": name, "power": power(p) })).collect()
+    let light = |(number, (name, p)): (usize, (&str, Rgb))| {
+        let mut about = json!({ "name": name, "power": power(p) });
+        if world.has_media() {
+            about["medium"] = info_media::name(world.scene(), world.light_surroundings(number).medium());
+        }
+        about
+    };
+    world.lights().enumerate().map(light).collect()
 }
 
 fn bounds(world: &World) -> Value {

@@ -2,8 +2,12 @@
 
 use std::io::IsTerminal;
 
+use nephroid::handle::Handle;
+use nephroid::integrator::Method;
 use nephroid::laboratory::{Inspector, PixelReport};
+use nephroid::medium::Medium;
 use nephroid::session::RenderSettings;
+use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 
 use crate::args::LimitArgs;
@@ -43,7 +47,7 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file.integrator, &args.run.photons, &mut messages)?;
+    let method = method::choose(args.integrator, &file, &args.run.photons, &mut messages)?;
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let limits = LimitArgs { spp: args.spp, passes: args.passes, time: None };
     let plan = Plan::new(&limits, file.sample_count);
@@ -108,6 +112,19 @@ impl Inspected<'_> {
         scene.all_shapes().nth(shape as usize).map_or(("", ""), |shape| {
             (shape.name.as_str(), crate::info::material(&scene.materials[shape.material]))
         })
+    }
+
+    /// The name of a medium.
+    pub fn medium(&self, medium: Option<Handle<Medium>>) -> &str {
+        medium.map_or("", |medium| self.world.scene().media.list[medium].name.as_str())
+    }
+
+    /// What its maps of light in media hold.
+    pub fn stored_in_media(&self) -> &'static str {
+        match &self.settings.method {
+            Method::PhotonMapper(config) if config.volume_kind == VolumeKind::Beams => "beam",
+            _ => "photon",
+        }
     }
 
     /// The name of a light.

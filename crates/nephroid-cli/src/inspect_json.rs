@@ -1,8 +1,8 @@
 //! What the estimate of a pixel saw, as JSON.
 
 use nephroid::color::Rgb;
-use nephroid::integrator::{Components, LightPart};
-use nephroid::laboratory::{Contribution, InspectedSample, LookUpReport, RayLight, SurfaceMet};
+use nephroid::integrator::{Components, FromVolume, LightPart};
+use nephroid::laboratory::{Contribution, InspectedSample, LookUpReport, MediumPassed, RayLight, SurfaceMet};
 use serde_json::{Value, json};
 
 use crate::info::{short, vector};
@@ -43,6 +43,7 @@ fn sample(inspected: &Inspected<'_>, number: usize, s: &InspectedSample) -> Valu
         "surfaces": s.surfaces.iter().map(|met| surface(inspected, met)).collect::<Vec<_>>(),
         "rays": s.rays.iter().map(ray).collect::<Vec<_>>(),
         "look_ups": s.look_ups.iter().map(|l| look_up(inspected, l)).collect::<Vec<_>>(),
+        "media": s.media.iter().map(|passed| medium(inspected, passed)).collect::<Vec<_>>(),
     })
 }
 
@@ -81,6 +82,24 @@ fn look_up(inspected: &Inspected<'_>, l: &LookUpReport) -> Value {
         "radius": short(l.radius),
         "count": l.count,
         "contributions": l.contributions.iter().map(contribution).collect::<Vec<_>>(),
+    })
+}
+
+fn medium(inspected: &Inspected<'_>, passed: &MediumPassed) -> Value {
+    let found = |found: &FromVolume| json!({ "count": found.count, "radiance": rgb(found.radiance) });
+    let light = &passed.light;
+    json!({
+        "gather_ray": passed.gather_ray,
+        "depth": passed.depth,
+        "medium": inspected.medium(passed.medium),
+        // Infinite ones have no number in JSON.
+        "length": passed.length.is_finite().then(|| short(passed.length)),
+        "emitted": rgb(light.emitted),
+        "single": rgb(light.single),
+        "ambient": rgb(light.ambient),
+        "volume": found(&light.volume),
+        "volume_caustic": found(&light.volume_caustic),
+        "transmittance": rgb(passed.transmittance),
     })
 }
 

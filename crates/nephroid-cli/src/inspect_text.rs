@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use nephroid::color::Rgb;
-use nephroid::integrator::{Components, LightPart};
-use nephroid::laboratory::{InspectedSample, LookUpReport, SurfaceMet};
+use nephroid::integrator::{Components, LightPart, MapName};
+use nephroid::laboratory::{InspectedSample, LookUpReport, MediumPassed, SurfaceMet};
 use nephroid::math::Vec3;
 use nephroid::transport::Bounces;
 
@@ -37,6 +37,9 @@ pub fn text(inspected: &Inspected<'_>) -> String {
         let _ = writeln!(out, "  from {} towards {}", vector(sample.origin), vector(sample.direction));
         lights(&mut out, sample, None, "  ");
         let whole = inspected.only.is_some();
+        for passed in sample.media.iter().filter(|passed| whole || passed.gather_ray.is_none()) {
+            medium(&mut out, inspected, passed);
+        }
         for (i, met) in sample.surfaces.iter().enumerate() {
             if whole || met.gather_ray.is_none() {
                 surface(&mut out, inspected, sample, i, met);
@@ -86,6 +89,34 @@ fn surface(
         );
         for c in &l.contributions {
             contribution(out, inspected, &indent, (c.light, c.bounces), (c.photons, c.radiance, c.part));
+        }
+    }
+}
+
+/// A medium that was passed, with what it brings: of light of which it brings none, nothing is told.
+fn medium(out: &mut String, inspected: &Inspected<'_>, passed: &MediumPassed) {
+    let indent = if passed.gather_ray.is_some() { "      " } else { "  " };
+    let by = passed.gather_ray.map_or(String::new(), |ray| format!("gather ray {ray}, "));
+    let _ = writeln!(
+        out,
+        "{indent}{by}segment {}: medium \"{}\" for {}, transmittance {}",
+        passed.depth,
+        inspected.medium(passed.medium),
+        passed.length,
+        rgb(passed.transmittance)
+    );
+    let light = &passed.light;
+    for (what, radiance) in
+        [("given off", light.emitted), ("scattered once, by rays", light.single), ("ambient", light.ambient)]
+    {
+        if !radiance.is_black() {
+            let _ = writeln!(out, "{indent}  {what}: {}", rgb(radiance));
+        }
+    }
+    for (map, found) in [(MapName::Volume, light.volume), (MapName::VolumeCaustic, light.volume_caustic)] {
+        if found.count > 0 {
+            let counted = plural(u64::from(found.count), inspected.stored_in_media());
+            let _ = writeln!(out, "{indent}  {} map: {} by {counted}", map.name(), rgb(found.radiance));
         }
     }
 }

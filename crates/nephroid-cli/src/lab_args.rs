@@ -23,7 +23,7 @@ pub struct PhotonsArgs {
     /// What colours tell in the picture: map, bounce, light, power
     #[arg(long, value_name = "WHAT", default_value = "map", value_parser = color)]
     pub color: PhotonColor,
-    /// Maps whose photons to take: global, caustic, afterglow, haze
+    /// Maps whose photons to take: global, caustic, afterglow, haze, volume, volume-caustic
     #[arg(long, value_name = "MAP,…", value_delimiter = ',', default_value = "global,caustic", value_parser = map)]
     pub maps: Vec<MapName>,
     /// Diameter of a photon in the picture, in pixels

@@ -2,11 +2,12 @@
 
 use nephroid::integrator::{Method, PathConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
-use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue};
+use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
 
 use crate::console::Messages;
 use crate::exit::Failure;
+use crate::media_flags;
 use crate::parameters::{Draft, PARAMETERS, Parameter, PhotonFlags};
 
 /// An integrator that can be asked for by name.
@@ -39,10 +40,11 @@ impl Integrator {
 /// else the photon mapper.
 pub fn choose(
     wanted: Option<Integrator>,
-    request: &IntegratorRequest,
+    file: &SceneFile,
     flags: &PhotonFlags,
     messages: &mut Messages,
 ) -> Result<Method, Failure> {
+    let request = &file.integrator;
     let chosen = match wanted {
         Some(Integrator::Scene) => by_scene(request)?,
         Some(other) => other,
@@ -71,7 +73,7 @@ pub fn choose(
             request.name
         ));
     }
-    let config = draft.finish();
+    let mut config = draft.finish();
     if matches!(chosen, Integrator::Path | Integrator::VolPath) {
         let media = chosen == Integrator::VolPath;
         let foreign: Vec<String> = flags
@@ -83,9 +85,13 @@ pub fn choose(
             let name = if media { "volpath" } else { "path" };
             messages.warning(&format!("{} mean nothing to the integrator {name}", foreign.join(", ")));
         }
+        if !media && file.scene.has_media() {
+            messages.warning("the integrator path takes no notice of media; volpath is the one that does");
+        }
         let (max_depth, direct_lights) = (config.max_depth, config.direct_lights);
         return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
     }
+    media_flags::settle(&mut config, file, flags, messages)?;
     Ok(Method::PhotonMapper(config))
 }
 

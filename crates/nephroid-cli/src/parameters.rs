@@ -304,6 +304,11 @@ impl PhotonFlags {
         self.0.iter().map(|(i, value)| (&PARAMETERS[*i], value.as_str()))
     }
 
+    /// Whether a parameter is among them, by the name of its flag.
+    pub fn has(&self, name: &str) -> bool {
+        self.iter().any(|(parameter, _)| parameter.name == name)
+    }
+
     /// The flags as they are written, for messages.
     pub fn names(&self) -> Vec<String> {
         self.iter().map(|(parameter, _)| format!("--{}", parameter.name)).collect()

@@ -4,8 +4,9 @@ use std::ffi::OsStr;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-use nephroid::integrator::Method;
+use nephroid::integrator::{MapName, Method};
 use nephroid::laboratory::{LegendEntry, MapPhoton, PhotonPicture, photon_picture, record_photons};
+use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 use nephroid_formats::image::{check_writable, write_png};
 use nephroid_formats::photons::{write_csv, write_ply};
@@ -38,10 +39,17 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
         messages.diagnostic(warning);
     }
     let wanted = Some(Integrator::PhotonMapper);
-    let method = method::choose(wanted, &file.integrator, &args.run.photons, &mut messages)?;
+    let method = method::choose(wanted, &file, &args.run.photons, &mut messages)?;
     let Method::PhotonMapper(config) = method else {
         return Err(Failure::Usage("photons are the photon mapper's".to_owned()));
     };
+    let in_media = |map: &MapName| matches!(map, MapName::Volume | MapName::VolumeCaustic);
+    if config.volume_kind == VolumeKind::Beams && args.maps.iter().any(in_media) {
+        return Err(Failure::Usage(
+            "beams have no place to be drawn or written at: --maps volume and volume-caustic need --volume-kind points"
+                .to_owned(),
+        ));
+    }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
     let watch =

@@ -74,7 +74,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file.integrator, &args.photons, &mut messages)?;
+    let method = method::choose(args.integrator, &file, &args.photons, &mut messages)?;
     resize(&mut file, args.resolution, &mut messages)?;
     let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, &outputs, &mut messages)?;
     let plan = Plan::new(&args.limits, file.sample_count);

@@ -196,12 +196,24 @@ impl Report<'_> {
         if let Some(ratio) = s.picture.direct_to_indirect() {
             let _ = writeln!(out, "direct to indirect light: {ratio:.4}");
         }
+        if let Some(share) = self.share_of_media() {
+            let _ = writeln!(out, "light from media: {:.2} % of all", 100.0 * share);
+        }
         let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr)", r.film.mean_luminance());
         if !self.outputs.is_empty() {
             let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
             let _ = writeln!(out, "written: {}", names.join(", "));
         }
         out
+    }
+
+    /// Of the picture's light what media scatter or give off towards the camera; none where they do not.
+    fn share_of_media(&self) -> Option<f64> {
+        let p = &self.rendered.statistics.picture;
+        let total = |v: [f64; 3]| v.iter().sum::<f64>();
+        let medium = total(p.medium);
+        let all = medium + [p.emitted, p.direct, p.global, p.caustic].map(total).iter().sum::<f64>();
+        (medium > 0.0).then(|| medium / all)
     }
 
     /// Where the power of each light went.

@@ -122,7 +122,7 @@ fn photons_refuse_what_they_cannot_do() {
         (
             &["--maps", "caustc"],
             "error: invalid value 'caustc' for '--maps <MAP,…>': there is no such map: it must be one of global, \
-             caustic, afterglow, haze; did you mean \"caustic\"?",
+             caustic, afterglow, haze, volume, volume-caustic; did you mean \"caustic\"?",
         ),
         (
             &["--color", "colour"],

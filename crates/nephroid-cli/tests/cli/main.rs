@@ -8,6 +8,8 @@ mod integrators;
 mod laboratory;
 mod layers;
 mod limits;
+mod media_flags;
+mod media_laboratory;
 mod outputs;
 mod pictures;
 mod scenes;

@@ -6,7 +6,8 @@ use nephroid::math::Vec3;
 use crate::image::{ImageError, ImageProblem, write_atomically};
 
 /// The header row. `bounce` counts bounces before the photon landed, `path` numbers the paths emitted
-/// for the map, and `kind` spells the path: L for the light, S for specular bounces, D for others.
+/// for the map, and `kind` spells the path: L for the light, S for specular bounces, V for collisions in
+/// media, D for others.
 const COLUMNS: [&str; 14] = [
     "x", "y", "z", "dx", "dy", "dz", "power_r", "power_g", "power_b", "map", "bounce", "light", "path",
     "kind",

@@ -9,7 +9,8 @@ use ply_rs_bw::writer::Writer;
 
 use crate::image::{ImageError, ImageProblem, write_atomically};
 
-/// The properties of a photon. `map` is 0 for global, 1 for caustic, 2 for afterglow; `bounce` counts bounces
+/// The properties of a photon. `map` is 0 for global, 1 for caustic, 2 for afterglow, 3 for haze, 4 for
+/// volume, 5 for volume-caustic; `bounce` counts bounces
 /// before the photon landed; `path` numbers the paths emitted for the map, which may be more than 2³².
 const PROPERTIES: [(&str, ScalarType); 13] = [
     ("x", ScalarType::Float),

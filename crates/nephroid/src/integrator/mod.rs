@@ -8,8 +8,8 @@ pub use path::PathConfig;
 pub(crate) use path::PathTracer;
 pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use photon_mapper::{Maps, PhotonMapper};
-pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Probe};
-pub use probe::{LightPart, MapName};
+pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Passed, Probe};
+pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 
 use crate::color::Rgb;
 use crate::film::Aov;

@@ -3,8 +3,10 @@
 use super::Components;
 use crate::color::Rgb;
 use crate::film::{Aov, AovSample};
+use crate::handle::Handle;
 use crate::material::Bsdf;
 use crate::math::Vec3;
+use crate::medium::Medium;
 use crate::photon_map::{Gathered, NearestList, Photon};
 use crate::transport::PixelSample;
 use crate::world::Hit;
@@ -41,11 +43,16 @@ pub enum MapName {
     Afterglow,
     /// V S* D, light from media, for the same surfaces.
     Haze,
+    /// Light in media but for caustics.
+    Volume,
+    /// L S⁺ V, caustics in media.
+    VolumeCaustic,
 }
 
 impl MapName {
     /// Every one of them.
-    pub const ALL: [Self; 4] = [Self::Global, Self::Caustic, Self::Afterglow, Self::Haze];
+    pub const ALL: [Self; 6] =
+        [Self::Global, Self::Caustic, Self::Afterglow, Self::Haze, Self::Volume, Self::VolumeCaustic];
 
     /// What the command line and exports call it.
     pub fn name(self) -> &'static str {
@@ -54,6 +61,8 @@ impl MapName {
             Self::Caustic => "caustic",
             Self::Afterglow => "afterglow",
             Self::Haze => "haze",
+            Self::Volume => "volume",
+            Self::VolumeCaustic => "volume-caustic",
         }
     }
 }
@@ -80,6 +89,50 @@ pub(crate) struct LookUp {
     pub other: Option<LightPart>,
 }
 
+/// What a map of light in media brings to a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FromVolume {
+    /// Photons or beams that counted; where a ray is marched along, as often as steps counted them.
+    pub count: u32,
+    /// Their light, in W/(m²·sr).
+    pub radiance: Rgb,
+}
+
+/// What a medium does to a ray on its way: the light that it adds, in W/(m²·sr) where the ray begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MediumLight {
+    /// What it gives off.
+    pub emitted: Rgb,
+    /// What it scatters once, found by rays to the lights.
+    pub single: Rgb,
+    /// What it looks like everywhere, with the ambient approximation.
+    pub ambient: Rgb,
+    /// What the map holds of all light but caustics.
+    pub volume: FromVolume,
+    /// What the map of caustics holds.
+    pub volume_caustic: FromVolume,
+}
+
+impl MediumLight {
+    /// All of it.
+    pub fn total(&self) -> Rgb {
+        let from_maps = self.volume.radiance + self.volume_caustic.radiance;
+        self.emitted + self.single + self.ambient + from_maps
+    }
+}
+
+/// A stretch of a ray that lies in one medium.
+pub(crate) struct Passed {
+    pub medium: Option<Handle<Medium>>,
+    /// May be infinite.
+    pub length: f32,
+    /// Segments from the lens to its end.
+    pub depth: u32,
+    pub light: MediumLight,
+    /// The share of light from its end that comes through.
+    pub transmittance: Rgb,
+}
+
 /// Watches the estimate of one camera sample. What it is told changes nothing; a render that wants to
 /// know nothing passes `()`, and pays nothing.
 pub(crate) trait Probe {
@@ -91,6 +144,8 @@ pub(crate) trait Probe {
     fn surface(&mut self, _met: &Met<'_>) {}
     /// Light that was found without photons.
     fn light(&mut self, _part: LightPart, _radiance: Rgb) {}
+    /// A medium is passed, and what it adds is multiplied as light without photons is.
+    fn medium(&mut self, _passed: &Passed) {}
     /// A photon counts in the look-up that is going on, with the direct light or with the other.
     fn photon(&mut self, _photon: &Photon, _is_direct: bool, _radiance: Rgb) {}
     /// A look-up is done.

@@ -152,7 +152,7 @@ impl<'w> Inspector<'w> {
             let light = estimator.radiance(&mut sample, &mut neighbors, &mut probe);
             sum.add(light.total(), weight);
             parts.add(&AovSample::of_light(light.by_layer()), weight);
-            let (surfaces, rays, look_ups) = Default::default();
+            let (surfaces, rays, look_ups, media) = Default::default();
             let iteration = self.iteration;
             let mut report = InspectedSample {
                 iteration,
@@ -164,6 +164,7 @@ impl<'w> Inspector<'w> {
                 surfaces,
                 rays,
                 look_ups,
+                media,
             };
             probe.finish(&mut report);
             self.inspected.push(report);

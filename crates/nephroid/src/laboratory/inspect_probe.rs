@@ -4,13 +4,17 @@ use std::collections::BTreeMap;
 
 use super::catalogue::Catalogue;
 use crate::color::Rgb;
-use crate::integrator::{Components, LightPart, LookUp, MapName, Met, Probe};
+use crate::handle::Handle;
+use crate::integrator::{
+    Components, FromVolume, LightPart, LookUp, MapName, MediumLight, Met, Passed, Probe,
+};
 use crate::math::{Vec2, Vec3};
+use crate::medium::Medium;
 use crate::photon_map::{Gathered, Photon};
 use crate::transport::Bounces;
 
-/// One camera sample, and all that its estimate met. Lights and contributions of the whole sample add up to
-/// [`light`](Self::light), up to rounding.
+/// One camera sample, and all that its estimate met. Lights, contributions and what media bring, of the whole sample,
+/// add up to [`light`](Self::light), up to rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InspectedSample {
     /// The iteration it belongs to, from 0.
@@ -29,8 +33,10 @@ pub struct InspectedSample {
     pub surfaces: Vec<SurfaceMet>,
     /// Light that was found without photons.
     pub rays: Vec<RayLight>,
-    /// Estimates from photon maps.
+    /// Estimates from photon maps of surfaces.
     pub look_ups: Vec<LookUpReport>,
+    /// Media that its path passed, and those of its gather rays where they count.
+    pub media: Vec<MediumPassed>,
 }
 
 /// A surface that was met.
@@ -64,6 +70,23 @@ pub struct RayLight {
     pub part: LightPart,
     /// What it brings to the sample, in W/(m²·sr).
     pub radiance: Rgb,
+}
+
+/// A stretch of the way that lies in a medium, from one surface of any kind to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MediumPassed {
+    /// The gather ray that passed it; `None` for the camera path. What gather rays find counts as global light.
+    pub gather_ray: Option<u64>,
+    /// Segments from the lens to its end.
+    pub depth: u32,
+    /// The medium, in [`Media::list`](crate::medium::Media::list).
+    pub medium: Option<Handle<Medium>>,
+    /// How long it is, in scene units; infinite where nothing ends it.
+    pub length: f32,
+    /// What it brings to the sample, in W/(m²·sr).
+    pub light: MediumLight,
+    /// The share of light from its end that comes through.
+    pub transmittance: Rgb,
 }
 
 /// An estimate from a photon map.
@@ -111,10 +134,11 @@ pub(super) struct InspectProbe<'c> {
     surfaces: Vec<SurfaceMet>,
     rays: Vec<RayLight>,
     look_ups: Vec<LookUpReport>,
+    media: Vec<MediumPassed>,
 }
 
 impl<'c> InspectProbe<'c> {
-    /// `catalogues` are in the order of [`MapName::ALL`]; none without photons.
+    /// `catalogues` are in the order of [`MapName::ALL`], those of surfaces; none without photons.
     pub fn new(catalogues: Option<&'c [Catalogue; 4]>) -> Self {
         Self {
             catalogues,
@@ -127,12 +151,14 @@ impl<'c> InspectProbe<'c> {
             surfaces: Vec::new(),
             rays: Vec::new(),
             look_ups: Vec::new(),
+            media: Vec::new(),
         }
     }
 
     /// Puts everything into the report of a sample.
     pub fn finish(self, sample: &mut InspectedSample) {
         (sample.surfaces, sample.rays, sample.look_ups) = (self.surfaces, self.rays, self.look_ups);
+        sample.media = self.media;
     }
 
     fn carried(&self) -> Rgb {
@@ -176,6 +202,21 @@ impl Probe for InspectProbe<'_> {
         }
     }
 
+    fn medium(&mut self, passed: &Passed) {
+        let carried = self.carried();
+        let Passed { medium, length, depth, light, transmittance } = *passed;
+        let carry = |found: FromVolume| FromVolume { radiance: carried * found.radiance, ..found };
+        let light = MediumLight {
+            emitted: carried * light.emitted,
+            single: carried * light.single,
+            ambient: carried * light.ambient,
+            volume: carry(light.volume),
+            volume_caustic: carry(light.volume_caustic),
+        };
+        let gather_ray = self.gather_ray;
+        self.media.push(MediumPassed { gather_ray, depth, medium, length, light, transmittance });
+    }
+
     fn photon(&mut self, photon: &Photon, is_direct: bool, radiance: Rgb) {
         self.photons.push((*photon, is_direct, radiance));
     }
@@ -185,7 +226,7 @@ impl Probe for InspectProbe<'_> {
         let mut sums: BTreeMap<(u32, Bounces), Contribution> = BTreeMap::new();
         for (photon, is_direct, radiance) in self.photons.drain(..) {
             let part = if is_direct { look_up.direct } else { look_up.other };
-            let record = self.catalogues.and_then(|c| c[look_up.map as usize].find(&photon));
+            let record = self.catalogues.and_then(|c| c.get(look_up.map as usize)?.find(&photon));
             let (Some(part), Some(record)) = (part, record) else { continue };
             let (light, bounces) = (record.photon.light, record.bounces);
             let nothing = Contribution { part, light, bounces, photons: 0, radiance: Rgb::BLACK };

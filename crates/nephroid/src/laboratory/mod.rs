@@ -10,6 +10,6 @@ mod photons;
 mod picture;
 
 pub use inspect::{Inspector, PixelReport};
-pub use inspect_probe::{Contribution, InspectedSample, LookUpReport, RayLight, SurfaceMet};
+pub use inspect_probe::{Contribution, InspectedSample, LookUpReport, MediumPassed, RayLight, SurfaceMet};
 pub use photons::{MapPhoton, MapPhotons, record_photons};
 pub use picture::{LegendEntry, PhotonColor, PhotonPicture, photon_picture};

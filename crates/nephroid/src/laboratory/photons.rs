@@ -1,15 +1,19 @@
 //! The photons that the maps of an iteration hold.
 
 use crate::integrator::{MapName, PhotonMapperConfig};
+use crate::math::Vec3;
 use crate::observer::{Observer, Phase, Work};
-use crate::photon_map::Photon;
-use crate::transport::{Bounces, PhotonPlan, RecordedPass, RecordedPhoton, record_photon_pass};
+use crate::photon_map::{Photon, VolumePhoton};
+use crate::transport::{
+    Bounces, PhotonPlan, RecordedPass, RecordedPhoton, record_photon_pass, record_volume_pass,
+};
 use crate::world::World;
 
 /// A photon of a map, with what is known of its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapPhoton {
-    /// Where it landed, and its share of the light's power in W: divided by the paths emitted for its map.
+    /// Where it landed, and its share of the light's power in W: divided by the paths emitted for its map. In a
+    /// medium the power is what is scattered there, and the normal is zero.
     pub photon: Photon,
     /// The map that holds it.
     pub map: MapName,
@@ -29,7 +33,8 @@ pub struct MapPhotons {
 }
 
 /// Traces the photons that iteration `iteration` of a render with these settings has in its maps.
-/// `samples_per_pixel` is that of the render, of an iteration. `None` if the observer cancelled.
+/// `samples_per_pixel` is that of the render, of an iteration. Beams in media are left out. `None` if the observer
+/// cancelled.
 pub fn record_photons(
     world: &World,
     config: &PhotonMapperConfig,
@@ -40,11 +45,17 @@ pub fn record_photons(
 ) -> Option<MapPhotons> {
     let plan = plan(world, config, seed, observer);
     let pass = record(world, config, &plan, samples_per_pixel, seed, iteration, observer)?;
+    let (settings, targets) = (config.walk_settings(), config.targets());
+    let media = record_volume_pass(world, &settings, &plan, &targets, seed, iteration, observer)?;
+    let volume: Vec<_> = media.volume.into_iter().map(anywhere).collect();
+    let volume_caustic = media.volume_caustic.into_iter().map(anywhere).collect();
     let lists = [
         (MapName::Global, pass.global, pass.global_paths),
         (MapName::Caustic, pass.caustic, pass.caustic_paths),
         (MapName::Afterglow, pass.afterglow, pass.caustic_paths),
         (MapName::Haze, pass.haze, pass.global_paths),
+        (MapName::Volume, volume, media.volume_paths),
+        (MapName::VolumeCaustic, volume_caustic, media.volume_caustic_paths),
     ];
     let mut photons = Vec::new();
     for (map, list, paths) in lists {
@@ -56,6 +67,13 @@ pub fn record_photons(
         }));
     }
     Some(MapPhotons { photons, plan })
+}
+
+/// A photon in a medium as one on a surface would be, without a normal.
+fn anywhere(recorded: RecordedPhoton<VolumePhoton>) -> RecordedPhoton {
+    let RecordedPhoton { photon, path, bounces } = recorded;
+    let VolumePhoton { position, power, wi, depth, light, .. } = photon;
+    RecordedPhoton { photon: Photon { position, power, wi, normal: Vec3::ZERO, depth, light }, path, bounces }
 }
 
 /// The plan that a session makes.

@@ -12,7 +12,7 @@ use crate::math::{Ray, Vec2, Vec3};
 use crate::texture::Image;
 use crate::world::{Hit, World, leave};
 
-/// A photon counts as seen if nothing lies before it up to this share of the way: its own surface is
+/// A photon on a surface counts as seen if nothing lies before it up to this share of the way: its own surface is
 /// there.
 const SEEN_UP_TO: f32 = 1.0 - 1e-4;
 
@@ -70,7 +70,8 @@ struct Dot {
 /// Draws photons, near ones over far ones, in the window that a render would fill: display values in
 /// [0, 1], and what the colours mean. Without [`PhotonPicture::through_walls`] only photons are drawn that
 /// nothing opaque hides and that lie on the side the camera sees of their surface, before surfaces in dark
-/// grey. All lie on straight lines from the camera: mirrors show none, and glass bends nothing.
+/// grey. Those in media are seen from all sides. All lie on straight lines from the camera: mirrors show none, and glass
+/// bends nothing.
 pub fn photon_picture(
     world: &World,
     photons: &[MapPhoton],
@@ -110,19 +111,21 @@ fn dot(
         return None;
     }
     let towards = place - from;
-    let turned_away = photon.photon.normal.dot(towards) >= 0.0;
-    if !options.through_walls && (turned_away || is_hidden(world, from, place)) {
+    let in_medium = photon.bounces.ends_in_medium();
+    let turned_away = !in_medium && photon.photon.normal.dot(towards) >= 0.0;
+    let seen_up_to = if in_medium { 1.0 } else { SEEN_UP_TO };
+    if !options.through_walls && (turned_away || is_hidden(world, from, place, seen_up_to)) {
         return None;
     }
     let (class, color) = scale.class_and_color(photon);
     Some(Dot { distance_sq: towards.length_squared(), position, class, color })
 }
 
-/// Whether anything opaque lies between the camera and a photon, in a straight line.
-fn is_hidden(world: &World, camera: Vec3, photon: Vec3) -> bool {
+/// Whether anything opaque lies between the camera and a photon, in a straight line, up to a share of the way.
+fn is_hidden(world: &World, camera: Vec3, photon: Vec3, seen_up_to: f32) -> bool {
     let mut origin = camera;
     loop {
-        let ray = Ray { origin, direction: photon - origin, t_max: SEEN_UP_TO };
+        let ray = Ray { origin, direction: photon - origin, t_max: seen_up_to };
         let Some(hit) = world.intersect(&ray) else { return false };
         if !is_clear(world, &hit) {
             return true;
@@ -246,6 +249,8 @@ fn of_map(map: MapName) -> Rgb {
         MapName::Caustic => Rgb::new(1.0, 0.65, 0.1),
         MapName::Afterglow => Rgb::new(0.4, 0.9, 0.45),
         MapName::Haze => Rgb::new(0.8, 0.5, 0.9),
+        MapName::Volume => Rgb::new(0.85, 0.9, 0.8),
+        MapName::VolumeCaustic => Rgb::new(1.0, 0.4, 0.35),
     }
 }
 

@@ -62,4 +62,11 @@ impl Scene {
     pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes))
     }
+
+    /// Whether anything stands in a medium. Media that nothing names are nowhere.
+    pub fn has_media(&self) -> bool {
+        self.all_shapes().any(|shape| shape.boundary.is_named() || shape.boundary.light.is_some())
+            || self.camera.medium.is_some()
+            || self.lights.iter().any(|light| light.medium.is_some())
+    }
 }

@@ -80,28 +80,53 @@ pub fn volume_pass(
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<[InMedia; 2]> {
+    let paths = [plan.volume.paths, plan.volume_caustic.paths];
+    match targets.volume_kind {
+        VolumeKind::Points => {
+            let record = |(): &mut (), _, event| match event {
+                Event::Collision(photon) => Some(photon),
+                Event::Surface(_) | Event::Way(_) | Event::Specular => None,
+            };
+            let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
+            let [all, caustics] = lists;
+            Some(
+                [VolumePhotons::new(paths[0], all), VolumePhotons::new(paths[1], caustics)]
+                    .map(InMedia::Points),
+            )
+        }
+        VolumeKind::Beams => {
+            let record = |(): &mut (), _, event| match event {
+                Event::Way(beam) => Some(beam),
+                Event::Surface(_) | Event::Collision(_) | Event::Specular => None,
+            };
+            let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
+            let [all, caustics] = lists;
+            Some([Beams::new(paths[0], all), Beams::new(paths[1], caustics)].map(InMedia::Beams))
+        }
+    }
+}
+
+/// [`volume_pass`], storing what `record` makes of each event, as [`photon_pass_with`] does: the list for all light
+/// but caustics, and that for caustics.
+#[expect(clippy::too_many_arguments, reason = "those of `volume_pass`, and one")]
+pub(super) fn volume_pass_with<H: Default, T: Copy + Send>(
+    world: &World,
+    settings: &WalkSettings,
+    plan: &PhotonPlan,
+    targets: &PhotonTargets,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+    record: impl Fn(&mut H, u64, Event) -> Option<T> + Sync,
+) -> Option<[Vec<T>; 2]> {
     let work = Work::begin(observer, Phase::Photons, plan.volume.paths + plan.volume_caustic.paths);
     let pass = |map, paths, stream| {
         let job = Job { world, settings, map, paths, key: Key::new(seed, iteration, stream), work: &work };
-        let stored = |event: &Event, kind| stored_in_volume(map, targets, event, kind);
-        match targets.volume_kind {
-            VolumeKind::Points => {
-                let ([points, _], _) = emit(&job, |(): &mut (), _, event, kind| {
-                    let (belongs, next) = stored(&event, kind);
-                    let photon = if let Event::Collision(photon) = event { Some(photon) } else { None };
-                    Kept { item: photon, lists: [belongs, false], next }
-                })?;
-                Some(InMedia::Points(VolumePhotons::new(paths, points)))
-            }
-            VolumeKind::Beams => {
-                let ([beams, _], _) = emit(&job, |(): &mut (), _, event, kind| {
-                    let (belongs, next) = stored(&event, kind);
-                    let beam = if let Event::Way(beam) = event { Some(beam) } else { None };
-                    Kept { item: beam, lists: [belongs, false], next }
-                })?;
-                Some(InMedia::Beams(Beams::new(paths, beams)))
-            }
-        }
+        let ([stored, _], _) = emit(&job, |state, path, event, kind| {
+            let (belongs, next) = stored_in_volume(map, targets, &event, kind);
+            Kept { item: record(state, path, event), lists: [belongs, false], next }
+        })?;
+        Some(stored)
     };
     let volume = pass(MapKind::Volume, plan.volume.paths, Stream::VolumePhotons)?;
     let caustic = pass(MapKind::VolumeCaustic, plan.volume_caustic.paths, Stream::VolumeCausticPhotons)?;

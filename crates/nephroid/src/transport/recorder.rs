@@ -2,18 +2,18 @@
 
 use std::fmt;
 
-use super::photon_pass::{Extras, photon_pass_with};
-use super::plan::PhotonPlan;
+use super::photon_pass::{Extras, photon_pass_with, volume_pass_with};
+use super::plan::{PhotonPlan, PhotonTargets, VolumeKind};
 use super::walk::{Event, WalkSettings};
 use crate::observer::Observer;
-use crate::photon_map::Photon;
+use crate::photon_map::{Photon, VolumePhoton};
 use crate::world::World;
 
 /// The bounces of a photon's path before it landed.
 ///
 /// Displayed in the notation of Heckbert (1990, *Adaptive Radiosity Textures…*): `L` for the light, `S` for a
 /// Dirac bounce, `V` for a collision in a medium, `D` for any other, the landing included: `LSSD` is light that went
-/// through a glass ball.
+/// through a glass ball, and `LSSV` the same where a medium scatters it.
 /// Of very long paths the middle is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Bounces {
@@ -22,12 +22,19 @@ pub struct Bounces {
     dirac: u64,
     /// Bit i: whether bounce i was a collision.
     medium: u64,
+    /// Whether it landed in a medium, and not on a surface.
+    ends_in_medium: bool,
 }
 
 impl Bounces {
     /// How many there were: 0 for light that comes straight.
     pub fn count(&self) -> u32 {
         self.count
+    }
+
+    /// Whether the photon lies in a medium, and not on a surface.
+    pub fn ends_in_medium(&self) -> bool {
+        self.ends_in_medium
     }
 
     fn push(&mut self, letter: char) {
@@ -49,15 +56,17 @@ impl fmt::Display for Bounces {
             });
         let path: String = letters.collect();
         let rest = if self.count > u64::BITS { "…" } else { "" };
-        write!(f, "L{path}{rest}D")
+        let landing = if self.ends_in_medium { 'V' } else { 'D' };
+        write!(f, "L{path}{rest}{landing}")
     }
 }
 
-/// A photon that a map would hold, and how it came there.
+/// A photon that a map would hold, and how it came there. On surfaces it is a [`Photon`], in media a
+/// [`VolumePhoton`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RecordedPhoton {
+pub struct RecordedPhoton<P = Photon> {
     /// As it was stored: with the power of its path alone, not yet divided by the paths emitted.
-    pub photon: Photon,
+    pub photon: P,
     /// The number of its path among those emitted for its map.
     pub path: u64,
     /// What its path met before.
@@ -81,6 +90,19 @@ pub struct RecordedPass {
     pub caustic_paths: u64,
 }
 
+/// The photons of one iteration in media, each list in the order in which [`volume_pass`](super::volume_pass) has it.
+#[derive(Clone, Debug)]
+pub struct RecordedVolumePass {
+    /// Those of all light but caustics.
+    pub volume: Vec<RecordedPhoton<VolumePhoton>>,
+    /// Those of caustics.
+    pub volume_caustic: Vec<RecordedPhoton<VolumePhoton>>,
+    /// Paths emitted for the former.
+    pub volume_paths: u64,
+    /// Paths emitted for the latter.
+    pub volume_caustic_paths: u64,
+}
+
 /// What a path has met.
 #[derive(Default)]
 struct Trail {
@@ -93,6 +115,19 @@ impl Trail {
     fn meet(&mut self, letter: Option<char>) {
         if let Some(last) = std::mem::replace(&mut self.last, letter) {
             self.bounces.push(last);
+        }
+    }
+
+    /// Follows an event; a photon on a surface or in a medium lands there.
+    fn follow(&mut self, event: &Event) {
+        match event {
+            Event::Surface(_) => self.meet(Some('D')),
+            Event::Collision(_) => self.meet(Some('V')),
+            Event::Specular => {
+                self.meet(None);
+                self.bounces.push('S');
+            }
+            Event::Way(_) => {}
         }
     }
 }
@@ -109,21 +144,10 @@ pub fn record_photon_pass(
     observer: &dyn Observer,
 ) -> Option<RecordedPass> {
     // The walk shows every event, stored or not.
-    let record = |trail: &mut Trail, path, event| match event {
-        Event::Surface(photon) => {
-            trail.meet(Some('D'));
-            Some(RecordedPhoton { photon, path, bounces: trail.bounces })
-        }
-        Event::Collision(_) => {
-            trail.meet(Some('V'));
-            None
-        }
-        Event::Specular => {
-            trail.meet(None);
-            trail.bounces.push('S');
-            None
-        }
-        Event::Way(_) => None,
+    let record = |trail: &mut Trail, path, event| {
+        trail.follow(&event);
+        let Event::Surface(photon) = event else { return None };
+        Some(RecordedPhoton { photon, path, bounces: trail.bounces })
     };
     let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
     Some(RecordedPass {
@@ -134,6 +158,34 @@ pub fn record_photon_pass(
         global_paths: plan.global.paths,
         caustic_paths: plan.caustic.paths,
     })
+}
+
+/// Emits the same paths as [`volume_pass`](super::volume_pass) does for points, and keeps what is known of each
+/// photon. Of beams nothing is recorded. `None` if the observer cancelled.
+pub fn record_volume_pass(
+    world: &World,
+    settings: &WalkSettings,
+    plan: &PhotonPlan,
+    targets: &PhotonTargets,
+    seed: u64,
+    iteration: u64,
+    observer: &dyn Observer,
+) -> Option<RecordedVolumePass> {
+    if targets.volume_kind == VolumeKind::Beams {
+        let (volume, volume_caustic) = (Vec::new(), Vec::new());
+        let nothing = RecordedVolumePass { volume, volume_caustic, volume_paths: 0, volume_caustic_paths: 0 };
+        return Some(nothing);
+    }
+    let record = |trail: &mut Trail, path, event| {
+        trail.follow(&event);
+        let Event::Collision(photon) = event else { return None };
+        let bounces = Bounces { ends_in_medium: true, ..trail.bounces };
+        Some(RecordedPhoton { photon, path, bounces })
+    };
+    let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
+    let [volume, volume_caustic] = lists;
+    let (volume_paths, volume_caustic_paths) = (plan.volume.paths, plan.volume_caustic.paths);
+    Some(RecordedVolumePass { volume, volume_caustic, volume_paths, volume_caustic_paths })
 }
 
 #[cfg(test)]
@@ -167,6 +219,8 @@ mod tests {
             assert_eq!(bounces.to_string(), path);
             assert_eq!(bounces.count() as usize, events.len() - 1);
         }
+        let collided = Bounces { ends_in_medium: true, ..of_events("SSV") };
+        assert_eq!(collided.to_string(), "LSSV");
         let long = of_events(&"D".repeat(99));
         assert_eq!((long.count(), long.to_string().chars().count()), (98, 67));
     }

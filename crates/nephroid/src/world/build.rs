@@ -62,11 +62,7 @@ impl World {
         let transparent = surfaces.iter().any(|s| s.invisible);
         let cutouts = surfaces.iter().any(|s| s.masked);
         let Media { list, grids } = &scene.media;
-        // Media that nothing names are nowhere.
-        let anywhere = surfaces.iter().any(|s| s.boundary.is_some())
-            || scene.camera.medium.is_some()
-            || scene.lights.iter().any(|light| light.medium.is_some())
-            || scene.shapes.iter().any(|shape| shape.boundary.light.is_some());
+        let anywhere = scene.has_media();
         let matters = list.iter().take_while(|_| anywhere).map(|m| Matter::new(m, grids)).collect();
         let mut world = Self {
             scene,

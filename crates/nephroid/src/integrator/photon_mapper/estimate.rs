@@ -318,6 +318,8 @@ impl<'a> PhotonMapper<'a> {
             MapName::Caustic => &self.maps.caustic,
             MapName::Afterglow => &self.maps.afterglow,
             MapName::Haze => &self.maps.haze,
+            // What they hold lies on no surface.
+            MapName::Volume | MapName::VolumeCaustic => return (Rgb::BLACK, Rgb::BLACK),
         };
         if map.is_empty() || bsdf.is_black() {
             return (Rgb::BLACK, Rgb::BLACK);

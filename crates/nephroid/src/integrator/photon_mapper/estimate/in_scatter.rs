@@ -6,7 +6,7 @@ use super::{DirectSource, PhotonMapper, Tools};
 use crate::color::Rgb;
 use crate::integrator::photon_mapper::VolumeIndex;
 use crate::integrator::photon_mapper::config::VolumeEstimate;
-use crate::integrator::{LightPart, Probe};
+use crate::integrator::{FromVolume, MediumLight, Passed, Probe};
 use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Profile};
 use crate::photon_map::Beam;
@@ -53,32 +53,35 @@ impl PhotonMapper<'_> {
         let &Segment { ray, end, matter, .. } = segment;
         let profile = matter.profile(ray, end);
         let through = profile.transmittance(end);
-        if !self.config.shows_media() {
-            return (Rgb::BLACK, through);
+        let mut light = MediumLight::default();
+        if self.config.shows_media() && self.config.fog == Fog::Ambient {
+            light.ambient = self.ambient(segment, through);
+        } else if self.config.shows_media() {
+            if matter.emits() {
+                light.emitted = matter.emitted(ray, end, sampler);
+            }
+            if self.config.single_scatter == DirectSource::Rays && self.fits(segment.depth + 1) {
+                light.single = self.single_scatter(segment, &profile, sampler);
+            }
+            if samples > 0 {
+                let [all, caustics] = &self.maps.volumes;
+                let mut read = |map| {
+                    let FromVolume { count, radiance } =
+                        self.scattered(map, segment, &profile, sampler, tools);
+                    FromVolume { count, radiance: radiance * samples as f32 }
+                };
+                (light.volume, light.volume_caustic) = (read(all), read(caustics));
+            }
         }
-        if self.config.fog == Fog::Ambient {
-            let seen = self.ambient(segment, through);
-            tools.probe.light(LightPart::Medium, seen);
-            return (seen, through);
-        }
-        let mut seen = Rgb::BLACK;
-        if matter.emits() {
-            seen += matter.emitted(ray, end, sampler);
-        }
-        if self.config.single_scatter == DirectSource::Rays && self.fits(segment.depth + 1) {
-            seen += self.single_scatter(segment, &profile, sampler);
-        }
-        if samples > 0 {
-            let found: Rgb = self
-                .maps
-                .volumes
-                .iter()
-                .map(|map| self.scattered(map, segment, &profile, sampler, tools))
-                .sum();
-            seen += found * samples as f32;
-        }
-        tools.probe.light(LightPart::Medium, seen);
-        (seen, through)
+        let medium = segment.inside.medium();
+        tools.probe.medium(&Passed {
+            medium,
+            length: end,
+            depth: segment.depth,
+            light,
+            transmittance: through,
+        });
+        (light.total(), through)
     }
 
     /// σ_s L_i (1 − e^(−σ_t d)) / σ_t, the report's first method, with L_i as the medium says.
@@ -139,10 +142,10 @@ impl PhotonMapper<'_> {
         profile: &Profile,
         sampler: &mut Sampler,
         tools: &mut Tools<'_, P>,
-    ) -> Rgb {
+    ) -> FromVolume {
         let (wo, phase) = (-segment.ray.direction, segment.matter.phase());
         let kernel = self.config.kernel;
-        let mut sum = Rgb::BLACK;
+        let (mut count, mut sum) = (0, Rgb::BLACK);
         match map {
             VolumeIndex::Points(map) if map.is_empty() => {}
             VolumeIndex::Points(map) => match self.config.volume_estimate {
@@ -155,6 +158,7 @@ impl PhotonMapper<'_> {
                         if self.fits(segment.depth + u32::from(photon.depth)) {
                             let scattered = photon.power * (phase.eval(wo, photon.wi) * weight);
                             sum += profile.transmittance((t - before).clamp(0.0, segment.end)) * scattered;
+                            count += 1;
                         }
                     });
                 }
@@ -168,11 +172,12 @@ impl PhotonMapper<'_> {
                         let scattered = segment.scattering(segment.ray.at(t)) * beam.power * reached;
                         sum +=
                             profile.transmittance(t) * scattered * (phase.eval(wo, -beam.direction) * weight);
+                        count += 1;
                     }
                 });
             }
         }
-        sum
+        FromVolume { count, radiance: sum }
     }
 }
 

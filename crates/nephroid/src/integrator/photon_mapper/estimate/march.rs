@@ -3,10 +3,10 @@
 use super::in_scatter::Segment;
 use super::{PhotonMapper, Tools};
 use crate::color::Rgb;
-use crate::integrator::Probe;
+use crate::integrator::{FromVolume, Probe};
 use crate::math::{Vec3, real};
 use crate::medium::Profile;
-use crate::photon_map::{Bandwidth, VolumeMap, VolumeQuery};
+use crate::photon_map::{Bandwidth, Gathered, VolumeMap, VolumeQuery};
 use crate::sampling::Sampler;
 
 /// Of how many parts of the scene a step of the report's march is one.
@@ -25,14 +25,14 @@ impl PhotonMapper<'_> {
         profile: &Profile,
         sampler: &mut Sampler,
         tools: &mut Tools<'_, P>,
-    ) -> Rgb {
+    ) -> FromVolume {
         let end = segment.end.min(segment.matter.reach(segment.ray));
-        let mut sum = Rgb::BLACK;
+        let (mut count, mut sum) = (0, Rgb::BLACK);
         let (mut from, mut radius) =
             (0.0, map.default_max_radius_in(segment.medium(), self.config.volume_neighbours()));
         // The medium may have no photons.
         if radius <= 0.0 || !end.is_finite() {
-            return Rgb::BLACK;
+            return FromVolume::default();
         }
         while from < end {
             let step = radius.max(end / MOST_STEPS);
@@ -44,9 +44,10 @@ impl PhotonMapper<'_> {
             if pdf > 0.0 {
                 sum += profile.transmittance(t) * source / pdf;
             }
-            (from, radius) = (to, found);
+            count += found.count;
+            (from, radius) = (to, found.radius);
         }
-        sum
+        FromVolume { count, radiance: sum }
     }
 
     /// L(x_k) = σ_s L_i Δx + e^(−σ_t Δx) L(x_(k−1)), from the far end (the report's §3.1).
@@ -55,32 +56,34 @@ impl PhotonMapper<'_> {
         map: &VolumeMap,
         segment: &Segment<'_>,
         tools: &mut Tools<'_, P>,
-    ) -> Rgb {
+    ) -> FromVolume {
         let end = segment.end.min(segment.matter.reach(segment.ray));
         if map.default_max_radius_in(segment.medium(), 2) <= 0.0 || !end.is_finite() {
-            return Rgb::BLACK;
+            return FromVolume::default();
         }
         let step = self.config.march_step.unwrap_or(2.0 * self.world.radius() / REPORT_STEPS);
         let steps = (end / step).ceil().max(1.0);
-        (0..steps as u32).rev().fold(Rgb::BLACK, |behind, k| {
+        (0..steps as u32).rev().fold(FromVolume::default(), |behind, k| {
             let near = k as f32 * step;
             let length = step.min(end - near);
             let position = segment.ray.at(near);
             let extinction = segment.matter.sigma_t(position);
             let left = extinction.map(|sigma| real::exp(-sigma * length));
-            self.source(map, segment, position, tools).0 * length + left * behind
+            let (source, found) = self.source(map, segment, position, tools);
+            let radiance = source * length + left * behind.radiance;
+            FromVolume { count: behind.count + found.count, radiance }
         })
     }
 
-    /// The radiance scattered per length at a point towards the origin of the ray, in W/(m³·sr), and the radius in which
-    /// photons were found.
+    /// The radiance scattered per length at a point towards the origin of the ray, in W/(m³·sr), and the photons that
+    /// were found.
     fn source<P: Probe>(
         &self,
         map: &VolumeMap,
         segment: &Segment<'_>,
         position: Vec3,
         tools: &mut Tools<'_, P>,
-    ) -> (Rgb, f32) {
+    ) -> (Rgb, Gathered) {
         let (wo, phase) = (-segment.ray.direction, segment.matter.phase());
         let (k, medium) = (self.config.volume_neighbours(), segment.medium());
         let bandwidth = Bandwidth::Nearest { k, max_radius: map.default_max_radius_in(medium, k) };
@@ -91,6 +94,6 @@ impl PhotonMapper<'_> {
         let gathered = map.at(&query, self.config.kernel, bandwidth, tools.neighbors, |photon, weight| {
             sum += photon.power * (phase.eval(wo, photon.wi) * weight);
         });
-        (sum, gathered.radius)
+        (sum, gathered)
     }
 }
