@@ -15,6 +15,7 @@ pub(crate) struct AreaEmitter {
     pieces: Vec<Primitive>,
     by_area: Discrete,
     area: f32,
+    middle: Vec3,
     radiance: Handle<Texture>,
     flipped: bool,
     /// Its own index, if none of its light can meet it.
@@ -31,7 +32,8 @@ impl AreaEmitter {
     ) -> Option<Self> {
         let by_area = Discrete::new(pieces.iter().map(|p| f64::from(p.area())))?;
         let area = by_area.total() as f32;
-        Some(Self { pieces, by_area, area, radiance, flipped, convex })
+        let middle = pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(piece.bounds())).center();
+        Some(Self { middle, pieces, by_area, area, radiance, flipped, convex })
     }
 
     /// πAL with the texture's mean for L, in W; exact for constant radiance.
@@ -41,7 +43,7 @@ impl AreaEmitter {
 
     /// The centre of its bounds.
     pub fn middle(&self) -> Vec3 {
-        self.pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(piece.bounds())).center()
+        self.middle
     }
 
     /// A point uniformly by area.

@@ -1,55 +1,67 @@
 //! Distances along a ray with the density of what a medium scatters back from there.
 
 use super::profile::Profile;
+use super::uniform::is_grey;
+use crate::color::Rgb;
 use crate::math::real;
 
 /// Halvings of a piece of a profile in search of an optical depth.
 const HALVINGS: u32 = 12;
 
 impl Profile {
-    /// Samples a distance between two, of which the farther may be infinite, by extinction times transmittance of the
-    /// mean channel; evenly where there is no extinction.
+    /// Samples a distance between two, of which the farther may be infinite, by extinction times transmittance of a
+    /// channel, which is chosen evenly of those that are stopped at all: a thin channel is seen far beyond where a thick
+    /// one ends. Evenly where there is no extinction.
     pub fn sample(&self, u: f32, from: f32, to: f32) -> f32 {
-        let (near, far) = (self.mean_depth(from), self.mean_depth(to));
-        let stopped = -real::exp_m1(near - far);
-        if stopped <= 0.0 {
+        let (near, stopped) = self.stopped(from, to);
+        let channels = (0..3).filter(|&c| stopped[c] > 0.0).count();
+        if channels == 0 {
             return from + u * (to - from);
         }
+        let scaled = if is_grey(near) && is_grey(stopped) { u } else { u * channels as f32 };
+        let chosen = (scaled as usize).min(channels - 1);
+        let channel = (0..3).filter(|&c| stopped[c] > 0.0).nth(chosen).unwrap_or(0);
+        let u = (scaled - chosen as f32).min(1.0 - f32::EPSILON);
         // The optical depth beyond which is the rest of what is stopped.
-        let wanted = near - real::ln(1.0 - u * stopped);
+        let wanted = near[channel] - real::ln(1.0 - u * stopped[channel]);
         let t = match self.uniform() {
-            Some(sigma_t) => wanted / sigma_t.mean(),
-            None => self.at_depth(wanted),
+            Some(sigma_t) => wanted / sigma_t[channel],
+            None => self.at_depth(channel, wanted),
         };
         t.clamp(from, to)
     }
 
     /// The density of [`Self::sample`] per length.
     pub fn pdf(&self, t: f32, from: f32, to: f32) -> f32 {
-        let (near, far) = (self.mean_depth(from), self.mean_depth(to));
-        let stopped = -real::exp_m1(near - far);
-        if stopped <= 0.0 {
-            return 1.0 / (to - from);
+        let (near, stopped) = self.stopped(from, to);
+        let (extinction, depth) = (self.extinction(t), self.depth(t));
+        let (mut sum, mut channels) = (0.0, 0);
+        for c in (0..3).filter(|&c| stopped[c] > 0.0) {
+            sum += extinction[c] * real::exp(near[c] - depth[c]) / stopped[c];
+            channels += 1;
         }
-        self.mean_extinction(t) * real::exp(near - self.mean_depth(t)) / stopped
+        if channels == 0 { 1.0 / (to - from) } else { sum / channels as f32 }
     }
 
-    fn mean_depth(&self, t: f32) -> f32 {
+    /// The optical depth at the nearer of two distances, and what is stopped between them of what comes there.
+    fn stopped(&self, from: f32, to: f32) -> (Rgb, Rgb) {
+        let (near, far) = (self.depth(from), self.depth(to));
+        (near, near.zip(far, |near, far| -real::exp_m1(near - far)))
+    }
+
+    fn depth(&self, t: f32) -> Rgb {
         match self.uniform() {
-            Some(sigma_t) => {
-                let sigma = sigma_t.mean();
-                if sigma > 0.0 { sigma * t } else { 0.0 }
-            }
-            None => self.depth_in_pieces(t).mean(),
+            Some(sigma_t) => sigma_t.map(|sigma| if sigma > 0.0 { sigma * t } else { 0.0 }),
+            None => self.depth_in_pieces(t),
         }
     }
 
-    /// Where the mean channel has an optical depth that it reaches.
-    fn at_depth(&self, depth: f32) -> f32 {
-        let (mut low, mut high) = self.piece_of_depth(depth);
+    /// Where a channel has an optical depth that it reaches.
+    fn at_depth(&self, channel: usize, depth: f32) -> f32 {
+        let (mut low, mut high) = self.piece_of_depth(channel, depth);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if self.mean_depth(middle) < depth {
+            if self.depth(middle)[channel] < depth {
                 low = middle;
             } else {
                 high = middle;
@@ -67,7 +79,6 @@ pub(super) fn lit_length(sigma_t: f32, t: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::Rgb;
     use crate::handle::Arena;
     use crate::math::{Ray, Transform, Vec3};
     use crate::medium::uniform::attenuation;
@@ -93,6 +104,7 @@ mod tests {
             (uniform(Rgb::new(0.5, 1.0, 3.0)), 0.3, 2.0),
             (uniform(Rgb::splat(2.0)), 0.0, f32::INFINITY),
             (uniform(Rgb::BLACK), 0.5, 2.0),
+            (uniform(Rgb::new(0.0, 4.0, 0.05)), 0.2, f32::INFINITY),
             (cloud(), 0.0, f32::INFINITY),
             (cloud(), 0.8, 1.2),
         ] {

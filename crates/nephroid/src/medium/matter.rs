@@ -119,6 +119,15 @@ impl Matter {
         }
     }
 
+    /// Whether it scatters any light.
+    pub fn scatters(&self) -> bool {
+        let stops = match &self.extinction {
+            Extinction::Uniform(sigma_t) => !sigma_t.is_black(),
+            Extinction::Cloud(_) => true,
+        };
+        stops && !self.albedo.is_black()
+    }
+
     /// Whether it gives off light.
     pub fn emits(&self) -> bool {
         self.emits

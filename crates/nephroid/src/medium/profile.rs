@@ -54,23 +54,23 @@ impl Profile {
         self.pieces.is_empty().then_some(self.sigma_t)
     }
 
-    /// The extinction of the mean channel at `t`.
-    pub(super) fn mean_extinction(&self, t: f32) -> f32 {
+    /// The extinction at `t`.
+    pub(super) fn extinction(&self, t: f32) -> Rgb {
         let s = t - self.start;
         let Some(last) = self.pieces.partition_point(|piece| piece.from <= s).checked_sub(1) else {
-            return self.sigma_t.mean();
+            return self.sigma_t;
         };
         let piece = &self.pieces[last];
         let x = (s - piece.from) / piece.length;
-        let [a, b, c, d] = piece.curve.map(Rgb::mean);
+        let [a, b, c, d] = piece.curve;
         // Behind a piece there is nothing up to the next.
-        let depth_per_piece = ((4.0 * d * x + 3.0 * c) * x + 2.0 * b) * x + a;
-        if x <= 1.0 { (depth_per_piece / piece.length).max(0.0) } else { 0.0 }
+        let depth_per_piece = ((d * (4.0 * x) + c * 3.0) * x + b * 2.0) * x + a;
+        if x <= 1.0 { (depth_per_piece / piece.length).map(|sigma| sigma.max(0.0)) } else { Rgb::BLACK }
     }
 
-    /// The ends of the piece in which the mean channel reaches an optical depth.
-    pub(super) fn piece_of_depth(&self, depth: f32) -> (f32, f32) {
-        let last = self.pieces.partition_point(|piece| piece.depth.mean() <= depth).saturating_sub(1);
+    /// The ends of the piece in which a channel reaches an optical depth.
+    pub(super) fn piece_of_depth(&self, channel: usize, depth: f32) -> (f32, f32) {
+        let last = self.pieces.partition_point(|piece| piece.depth[channel] <= depth).saturating_sub(1);
         let Piece { from, length, .. } = self.pieces[last];
         (self.start + from, self.start + from + length)
     }

@@ -11,6 +11,9 @@ use crate::medium;
 use crate::shape::{Geometry, Mesh, Shape};
 use crate::texture::Texture;
 
+/// Photons tell media apart by numbers of 16 bits, of which the last is none.
+const MAX_MEDIA: usize = 65_535;
+
 /// Longest side of a picture.
 const MAX_SIDE: u32 = 65_536;
 
@@ -133,6 +136,10 @@ fn check_materials(scene: &Scene, problems: &mut Problems) {
 /// Grids, media, and what refers to media.
 fn check_media(scene: &Scene, problems: &mut Problems) {
     let media = &scene.media;
+    if media.list.len() > MAX_MEDIA {
+        let message = format!("{} media: at most {MAX_MEDIA} can be told apart", media.list.len());
+        problems.add(Subject::Medium(MAX_MEDIA), message);
+    }
     let grids = media.grids.iter().map(medium::check_grid);
     let list = media.list.iter().map(|each| medium::check_medium(media, each));
     let shapes = scene.all_shapes().map(|shape| medium::check_boundary(media, &shape.boundary));
@@ -148,6 +155,11 @@ fn check_media(scene: &Scene, problems: &mut Problems) {
             problems.add(subject, message);
         }
     }
+}
+
+fn is_masked(scene: &Scene, shape: &Shape) -> bool {
+    scene.materials.contains(shape.material)
+        && matches!(scene.materials[shape.material], Material::Mask { .. })
 }
 
 fn check_mesh(mesh: &Mesh, mut problem: impl FnMut(&'static str)) {
@@ -181,6 +193,13 @@ fn check_shapes(scene: &Scene, problems: &mut Problems) {
         check_transform(&shape.to_world, subject, problems);
         if !scene.materials.contains(shape.material) {
             problems.add(subject, "its material does not exist");
+        }
+        if shape.boundary.is_named() && is_masked(scene, shape) {
+            problems.add(
+                subject,
+                "a masked surface bounds no medium, for nothing is crossed in its holes: put a shape of `null` material that \
+                 names the media beside it",
+            );
         }
         if shape.boundary.priority.is_some() {
             check_priority(scene, shape, subject, problems);

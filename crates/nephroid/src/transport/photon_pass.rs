@@ -119,6 +119,9 @@ pub(super) fn volume_pass_with<H: Default, T: Copy + Send>(
     observer: &dyn Observer,
     record: impl Fn(&mut H, u64, Event) -> Option<T> + Sync,
 ) -> Option<[Vec<T>; 2]> {
+    if plan.volume.paths + plan.volume_caustic.paths == 0 {
+        return Some([Vec::new(), Vec::new()]);
+    }
     let work = Work::begin(observer, Phase::Photons, plan.volume.paths + plan.volume_caustic.paths);
     let pass = |map, paths, stream| {
         let job = Job { world, settings, map, paths, key: Key::new(seed, iteration, stream), work: &work };

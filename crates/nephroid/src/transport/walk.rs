@@ -181,18 +181,19 @@ fn step(
             Fog::Volume => {
                 let (kind, carried) = (walker.history.kind_in_medium(), walker.power);
                 let (mut beam, mut next) = (way(world, walker, matter, end), Next::Continue);
-                if beam.long {
+                let shows = matter.scatters();
+                if beam.long && shows {
                     next = visit(Event::Way(beam), kind);
                 }
                 let passage =
                     matter.travel_and_tell(&walker.ray, end, carried, sampler, |from, to, weight| {
                         beam.origin = walker.ray.at(from);
                         (beam.length, beam.power) = (to - from, carried * weight);
-                        if beam.length > 0.0 && !beam.power.is_black() && next == Next::Continue {
+                        if shows && beam.length > 0.0 && !beam.power.is_black() && next == Next::Continue {
                             next = visit(Event::Way(beam), kind);
                         }
                     });
-                if !beam.long && matter.uniform_extinction().is_some() {
+                if !beam.long && shows && matter.uniform_extinction().is_some() {
                     if let Passage::Collision { t, .. } = passage {
                         beam.length = t;
                     }

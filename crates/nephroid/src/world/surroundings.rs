@@ -166,7 +166,11 @@ impl World {
             let Some(hit) = hit else { return through };
             let (point, direction) = (self.surface(&ray, &hit), ray.direction);
             inside = self.cross(inside, &met(hit, point), direction, direction);
-            ray = Ray { t_max: ray.t_max - hit.t, ..leave(&point, direction) };
+            // It ends where it did: the way on begins a little beside where the last one met the surface.
+            let (end, onward) = (ray.at(ray.t_max), leave(&point, direction));
+            let left =
+                if ray.t_max.is_finite() { (end - onward.origin).dot(direction) } else { f32::INFINITY };
+            ray = Ray { t_max: left, ..onward };
         }
     }
 

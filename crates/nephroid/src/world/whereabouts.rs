@@ -54,7 +54,11 @@ impl World {
         let mut remarks = Vec::new();
         let outside = match self.scene.camera.medium {
             Some(medium) => Surroundings::of(Some(medium)),
-            None => self.found(Subject::Camera, "the camera stands", self.camera_probes(), &mut remarks),
+            None => {
+                let found =
+                    self.found(Subject::Camera, "the camera stands", self.camera_probes(), &mut remarks);
+                found.unwrap_or_default()
+            }
         };
         self.camera_surroundings =
             self.nested(outside, self.scene.camera.medium.is_some(), self.camera_probes());
@@ -87,9 +91,11 @@ impl World {
             Some(medium) => Surroundings::of(medium),
             // It comes from outside of everything.
             None if emitter.is_infinite() => return Surroundings::default(),
-            // What the camera is said to stand in is everywhere.
-            None if self.surfaces.iter().all(|s| s.boundary.is_none()) => self.camera_surroundings,
-            None => self.found(subject, "its light starts", self.light_probes(light), remarks),
+            None => {
+                let found = self.found(subject, "its light starts", self.light_probes(light), remarks);
+                // Where it sees no boundary, what the camera is said to stand in is around it as well.
+                found.unwrap_or(Surroundings::of(self.scene.camera.medium))
+            }
         };
         if emitter.is_infinite() {
             return outside;
@@ -134,19 +140,22 @@ impl World {
         sides
     }
 
-    /// What most of some rays find; a remark where they do not agree.
+    /// What most of some rays find; a remark where they do not agree. `None` if they meet no boundary.
     fn found(
         &self,
         subject: Subject,
         what: &str,
         rays: impl Iterator<Item = Ray>,
         remarks: &mut Vec<Remark>,
-    ) -> Surroundings {
+    ) -> Option<Surroundings> {
         let mut votes = Votes::default();
         for ray in rays {
             if let Some((medium, shape)) = self.first_boundary(ray) {
                 *votes.0.entry((medium.map(Handle::index), shape)).or_default() += 1;
             }
+        }
+        if votes.0.is_empty() {
+            return None;
         }
         let (winner, [for_it, against]) = votes.count();
         if !against.is_empty() {
@@ -166,7 +175,7 @@ impl World {
         }
         let medium =
             winner.and_then(|w| self.scene.media.list.iter_handles().nth(w)).map(|(handle, _)| handle);
-        Surroundings::of(medium)
+        Some(Surroundings::of(medium))
     }
 
     /// The side of the first surface along a ray that names media: which medium that is, and the shape; of a shape

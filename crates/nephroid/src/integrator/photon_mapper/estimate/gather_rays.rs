@@ -113,7 +113,9 @@ impl PhotonMapper<'_> {
         let mut depth = vertex.depth + 1;
         let (mut distance, mut near) = (0.0, 0);
         // A surface at the last segment can still reflect nothing: light needs one more.
-        while self.fits(depth + 1) {
+        // What media give off and rays find in them needs no more; surfaces reflect only with one segment more.
+        let more = |depth| self.fits(depth + 1) || (self.world.has_media() && self.fits(depth));
+        while more(depth) {
             let hit = self.world.intersect(&way.ray);
             if let Some(matter) = self.world.matter(way.inside) {
                 let end = hit.map_or(f32::INFINITY, |hit| hit.t);
@@ -129,7 +131,7 @@ impl PhotonMapper<'_> {
                     throughput *= through;
                 }
             }
-            let Some(hit) = hit else { break };
+            let Some(hit) = hit.filter(|_| self.fits(depth + 1)) else { break };
             distance += hit.t;
             let wo = -way.ray.direction;
             let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);

@@ -62,6 +62,7 @@ impl PhotonMapper<'_> {
             return FromVolume::default();
         }
         let step = self.config.march_step.unwrap_or(2.0 * self.world.radius() / REPORT_STEPS);
+        let step = step.max(end / MOST_STEPS);
         let steps = (end / step).ceil().max(1.0);
         (0..steps as u32).rev().fold(FromVolume::default(), |behind, k| {
             let near = k as f32 * step;
