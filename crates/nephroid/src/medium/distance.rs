@@ -18,7 +18,8 @@ impl Profile {
         if channels == 0 {
             return from + u * (to - from);
         }
-        let scaled = if is_grey(near) && is_grey(stopped) { u } else { u * channels as f32 };
+        // Of channels that are all alike the first will do.
+        let scaled = if self.uniform().is_some_and(is_grey) { u } else { u * channels as f32 };
         let chosen = (scaled as usize).min(channels - 1);
         let channel = (0..3).filter(|&c| stopped[c] > 0.0).nth(chosen).unwrap_or(0);
         let u = (scaled - chosen as f32).min(1.0 - f32::EPSILON);
@@ -103,6 +104,7 @@ mod tests {
         for (matter, from, to) in [
             (uniform(Rgb::new(0.5, 1.0, 3.0)), 0.3, 2.0),
             (uniform(Rgb::splat(2.0)), 0.0, f32::INFINITY),
+            (uniform(Rgb::new(1.0, 0.5, 2.0)), 0.0, f32::INFINITY),
             (uniform(Rgb::BLACK), 0.5, 2.0),
             (uniform(Rgb::new(0.0, 4.0, 0.05)), 0.2, f32::INFINITY),
             (cloud(), 0.0, f32::INFINITY),

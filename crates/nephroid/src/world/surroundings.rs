@@ -63,14 +63,19 @@ impl Vantage<'_> {
             Self::Surface(p) => offset_origin(p.position, p.error, p.ng, wi),
             Self::Space(position) => *position,
         };
-        match source {
-            Source::Infinity => Ray::new(origin, wi),
-            Source::Point(p) => Ray { origin, direction: *p - origin, t_max: SHADOW_END },
-            Source::Surface(s) => {
-                let end = offset_origin(s.position, s.error, s.ng, -wi);
-                Ray { origin, direction: end - origin, t_max: SHADOW_END }
-            }
+        match end_of(wi, source) {
+            None => Ray::new(origin, wi),
+            Some(end) => Ray { origin, direction: end - origin, t_max: SHADOW_END },
         }
+    }
+}
+
+/// Where shadow rays to a light end that is not infinitely far away.
+fn end_of(wi: Vec3, source: &Source) -> Option<Vec3> {
+    match source {
+        Source::Infinity => None,
+        Source::Point(p) => Some(*p),
+        Source::Surface(s) => Some(offset_origin(s.position, s.error, s.ng, -wi)),
     }
 }
 
@@ -145,15 +150,21 @@ impl World {
         if !self.has_ranks() && (self.matters.is_empty() || inside.blind) {
             return if self.occluded(&ray) { Rgb::BLACK } else { Rgb::WHITE };
         }
-        let length = ray.direction.length();
-        let ray = Ray { direction: ray.direction / length, t_max: ray.t_max * length, ..ray };
-        self.transmittance(ray, inside, sampler)
+        self.transmittance(ray, end_of(wi, source), inside, sampler)
     }
 
-    /// The share of light that comes through to the end of a ray with a direction of unit length: null surfaces
-    /// and those inside of shapes of higher priority are passed, all others stop it.
-    fn transmittance(&self, mut ray: Ray, mut inside: Surroundings, sampler: &mut Sampler) -> Rgb {
+    /// The share of light that comes through to the end of a ray: null surfaces and those inside of shapes of higher
+    /// priority are passed, all others stop it. Of a light that is not infinitely far away `end` is where the ray is
+    /// aimed at anew behind each of them, for it begins there a little beside its way.
+    fn transmittance(
+        &self,
+        ray: Ray,
+        end: Option<Vec3>,
+        mut inside: Surroundings,
+        sampler: &mut Sampler,
+    ) -> Rgb {
         let mut through = Rgb::WHITE;
+        let mut ray = unit(ray);
         loop {
             let hit = self.nearest(&ray);
             if hit.is_some_and(|hit| self.stops(&ray, hit, &inside)) {
@@ -166,11 +177,15 @@ impl World {
             let Some(hit) = hit else { return through };
             let (point, direction) = (self.surface(&ray, &hit), ray.direction);
             inside = self.cross(inside, &met(hit, point), direction, direction);
-            // It ends where it did: the way on begins a little beside where the last one met the surface.
-            let (end, onward) = (ray.at(ray.t_max), leave(&point, direction));
-            let left =
-                if ray.t_max.is_finite() { (end - onward.origin).dot(direction) } else { f32::INFINITY };
-            ray = Ray { t_max: left, ..onward };
+            ray = leave(&point, direction);
+            if let Some(end) = end {
+                let left = end - ray.origin;
+                // The surface lies just before the light.
+                if left.dot(direction) <= 0.0 {
+                    return through;
+                }
+                ray = unit(Ray { direction: left, t_max: SHADOW_END, ..ray });
+            }
         }
     }
 
@@ -181,6 +196,12 @@ impl World {
         let hidden = || self.is_hidden(&met(hit, self.surface(ray, &hit)), ray.direction, inside);
         !invisible && (rank == 0 || !hidden())
     }
+}
+
+/// The same ray with a direction of unit length.
+fn unit(ray: Ray) -> Ray {
+    let length = ray.direction.length();
+    Ray { direction: ray.direction / length, t_max: ray.t_max * length, ..ray }
 }
 
 fn met(hit: RayHit, point: SurfacePoint) -> Hit {
