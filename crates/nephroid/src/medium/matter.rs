@@ -192,13 +192,6 @@ impl Matter {
     }
 
     /// The transmittance along a ray with a direction of unit length, up to `t_max`, without noise.
-    pub fn profile(&self, ray: &Ray, t_max: f32) -> Profile {
-        let mut profile = Profile::default();
-        self.profile_into(ray, t_max, &mut profile);
-        profile
-    }
-
-    /// The same in the memory of another.
     pub fn profile_into(&self, ray: &Ray, t_max: f32, profile: &mut Profile) {
         match &self.extinction {
             Extinction::Uniform(sigma_t) => profile.reset(*sigma_t),
@@ -207,5 +200,12 @@ impl Matter {
                 cloud.profile(ray, t_max, profile);
             }
         }
+    }
+    /// The same, in memory of its own.
+    #[cfg(test)]
+    pub fn profile(&self, ray: &Ray, t_max: f32) -> Profile {
+        let mut profile = Profile::default();
+        self.profile_into(ray, t_max, &mut profile);
+        profile
     }
 }

@@ -107,7 +107,6 @@ mod tests {
     use crate::handle::Arena;
     use crate::material::Material;
     use crate::math::{DVec3, Transform, Vec3, offset_origin, warp};
-    use crate::medium::Boundary;
     use crate::sampling::{Key, Sampler, Sequence, Stream};
     use crate::texture::Textures;
 
@@ -115,15 +114,7 @@ mod tests {
         let mut textures = Textures::default();
         let reflectance = textures.constant(Rgb::WHITE);
         let material = Arena::default().push(Material::Diffuse { reflectance });
-        Shape {
-            name: String::new(),
-            geometry,
-            to_world,
-            material,
-            emission: None,
-            flip_normals: false,
-            boundary: Boundary::default(),
-        }
+        Shape { to_world, ..Shape::new("", geometry, material) }
     }
 
     fn pieces(shape: &Shape, meshes: &[Mesh]) -> Vec<Primitive> {

@@ -5,7 +5,6 @@ use crate::bvh::Simd;
 use crate::camera::{Camera, Projection};
 use crate::film::{FilmSettings, Filter};
 use crate::math::{DVec3, Transform, Vec2, warp};
-use crate::medium::Boundary;
 use crate::medium::Media;
 use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::shape::{Geometry, Group, Instance, Mesh, Primitive, Shape, ShearedRay, Triangle};
@@ -35,15 +34,7 @@ fn empty() -> Scene {
 
 fn shape(scene: &Scene, geometry: Geometry, to_world: Transform) -> Shape {
     let material = scene.materials.iter_handles().next().unwrap().0;
-    Shape {
-        name: String::new(),
-        geometry,
-        to_world,
-        material,
-        emission: None,
-        flip_normals: false,
-        boundary: Boundary::default(),
-    }
+    Shape { to_world, ..Shape::new("", geometry, material) }
 }
 
 /// A closed, bumpy ball about the origin, of radius about 1 and `2·n·(n − 1)` triangles.

@@ -12,6 +12,7 @@ use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
 use crate::math::{Ray, Vec3};
+use crate::medium::Profile;
 use crate::photon_map::{Bandwidth, NearestList, Query, gather};
 use crate::sampling::{Sampler, Sequence};
 use crate::shape::SurfacePoint;
@@ -31,6 +32,8 @@ const GATHER_PHOTONS: u32 = 6;
 struct Tools<'t, P> {
     /// Memory that look-ups lend one another.
     neighbors: &'t mut NearestList,
+    /// The same of the transmittance along a ray.
+    profile: Profile,
     probe: &'t mut P,
 }
 
@@ -331,7 +334,7 @@ impl<'a> PhotonMapper<'a> {
         };
         let has_direct = self.config.direct == DirectSource::Map && wanted.map == MapName::Global;
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
-        let Tools { neighbors, probe } = tools;
+        let Tools { neighbors, probe, .. } = tools;
         let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
             let radiance = f * photon.power * weight;
@@ -353,7 +356,15 @@ impl Estimator for PhotonMapper<'_> {
     ) -> Components {
         let mut out = Components::default();
         let way = Way { ray: sample.ray, inside: self.world.camera_surroundings(), entered: false };
-        self.trace(way, Rgb::WHITE, 1, Branch::WHOLE, sample, &mut Tools { neighbors, probe }, &mut out);
+        self.trace(
+            way,
+            Rgb::WHITE,
+            1,
+            Branch::WHOLE,
+            sample,
+            &mut Tools { neighbors, profile: Profile::default(), probe },
+            &mut out,
+        );
         out
     }
 }

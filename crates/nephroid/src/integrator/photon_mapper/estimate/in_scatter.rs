@@ -51,7 +51,8 @@ impl PhotonMapper<'_> {
         tools: &mut Tools<'_, P>,
     ) -> (Rgb, Rgb) {
         let &Segment { ray, end, matter, .. } = segment;
-        let profile = matter.profile(ray, end);
+        let mut profile = std::mem::take(&mut tools.profile);
+        matter.profile_into(ray, end, &mut profile);
         let through = profile.transmittance(end);
         let mut light = MediumLight::default();
         if self.config.shows_media() && self.config.fog == Fog::Ambient {
@@ -73,6 +74,7 @@ impl PhotonMapper<'_> {
                 (light.volume, light.volume_caustic) = (read(all), read(caustics));
             }
         }
+        tools.profile = profile;
         let medium = segment.inside.medium();
         tools.probe.medium(&Passed {
             medium,
