@@ -273,7 +273,7 @@ fn aimed_photons_of_a_point_light_all_carry_the_same() {
 fn plan(world: &World, aim: bool) -> PhotonPlan {
     let config = PhotonMapperConfig { aim, emit_max: 1_000_000, ..Default::default() };
     let settings = RenderSettings { method: Method::PhotonMapper(config), samples_per_pixel: 1, seed: 1 };
-    Session::new(world, settings, &Silent).statistics().plan
+    Session::new(world, settings, &Silent).plan().photons
 }
 
 /// Water over a floor under a small lamp so far away that it sends a hundredth of its light there.

@@ -5,12 +5,13 @@ use nephroid::integrator::{
     DirectSource, LightPart, MapName, Method, PhotonMapperConfig, Show, VolumeEstimate,
 };
 use nephroid::laboratory::{
-    InspectedSample, Inspector, PhotonColor, PhotonPicture, photon_picture, record_photons,
+    InspectedSample, Inspector, MapPhotons, PhotonColor, PhotonPicture, photon_picture, record_photons,
 };
 use nephroid::observer::Silent;
 use nephroid::photon_map::VolumePhoton;
 use nephroid::session::RenderSettings;
 use nephroid::transport::{Fog, InMedia, PhotonTargets, VolumeKind, WalkSettings, volume_pass};
+use nephroid::world::World;
 use nephroid_convergence::{balls_in_fog, glossy_ball_in_fog, render, session, three_media};
 
 const SIDE: u32 = 8;
@@ -86,7 +87,7 @@ fn what_media_bring_adds_up_to_the_pixel_of_the_render() {
 fn recorded_photons_in_media_are_those_of_the_maps() {
     let world = balls_in_fog(SIDE).build();
     let config = PhotonMapperConfig { single_scatter: DirectSource::Map, ..few() };
-    let recorded = record_photons(&world, &config, SAMPLES, SEED, 2, &Silent).expect("nothing cancels");
+    let recorded = photons_of(&world, &config, SAMPLES, SEED, 2).expect("nothing cancels");
     let targets = PhotonTargets {
         global: config.photons,
         caustic: config.caustic_photons,
@@ -121,9 +122,9 @@ fn recorded_photons_in_media_are_those_of_the_maps() {
         }
     }
     let statistics = session(&world, Method::PhotonMapper(config.clone()), 1, SEED).statistics().clone();
-    assert_eq!(recorded.plan, statistics.plan);
+    assert_eq!(recorded.plan, statistics.plan.photons);
     let beams = PhotonMapperConfig { volume_kind: VolumeKind::Beams, ..config };
-    let photons = record_photons(&world, &beams, SAMPLES, SEED, 0, &Silent).expect("nothing cancels").photons;
+    let photons = photons_of(&world, &beams, SAMPLES, SEED, 0).expect("nothing cancels").photons;
     assert!(!photons.is_empty() && photons.iter().all(|photon| !photon.bounces.ends_in_medium()));
 }
 
@@ -138,8 +139,7 @@ fn photons_in_media_show_through_null_surfaces_and_not_through_walls() {
             scene.scene.camera.to_world = scene.scene.camera.to_world.then(turn);
         }
         let world = scene.build();
-        let photons =
-            record_photons(&world, &few(), SAMPLES, SEED, 0, &Silent).expect("nothing cancels").photons;
+        let photons = photons_of(&world, &few(), SAMPLES, SEED, 0).expect("nothing cancels").photons;
         let of_volume: Vec<_> = photons.into_iter().filter(|photon| photon.map == MapName::Volume).collect();
         let options = PhotonPicture { color: PhotonColor::Map, size: 1, through_walls: false };
         let legend = photon_picture(&world, &of_volume, &options).1;
@@ -149,4 +149,16 @@ fn photons_in_media_show_through_null_surfaces_and_not_through_walls() {
     assert!(4 * seen > 3 * all, "{seen} of {all}");
     let (seen, all) = draw(true);
     assert!(all > 500 && seen == 0, "{seen} of {all}");
+}
+
+/// The photons of an iteration of the photon mapper, if nothing cancels.
+fn photons_of(
+    world: &World,
+    config: &PhotonMapperConfig,
+    samples_per_pixel: u32,
+    seed: u64,
+    iteration: u64,
+) -> Option<MapPhotons> {
+    let method = Method::PhotonMapper(config.clone());
+    record_photons(world, &RenderSettings { method, samples_per_pixel, seed }, iteration, &Silent)
 }

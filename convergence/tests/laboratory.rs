@@ -8,7 +8,7 @@ use nephroid::integrator::{
     Components, DirectSource, FinalGather, LightPart, MapName, Method, PathConfig, PhotonMapperConfig, Show,
 };
 use nephroid::laboratory::{
-    InspectedSample, Inspector, PhotonColor, PhotonPicture, photon_picture, record_photons,
+    InspectedSample, Inspector, MapPhotons, PhotonColor, PhotonPicture, photon_picture, record_photons,
 };
 use nephroid::material::Material;
 use nephroid::math::{Transform, Vec3};
@@ -257,8 +257,8 @@ fn recorded_photons_are_those_of_the_maps() {
     let method = Method::PhotonMapper(config.clone());
     let session = rendered(&world, &method, 1, &[]);
     let statistics = session.statistics();
-    let recorded = record_photons(&world, &config, 10, 5, 0, &Silent).expect("nothing cancels");
-    assert_eq!(recorded.plan, statistics.plan);
+    let recorded = photons_of(&world, &config, 10, 5, 0).expect("nothing cancels");
+    assert_eq!(recorded.plan, statistics.plan.photons);
     let of = |map| recorded.photons.iter().filter(move |p| p.map == map);
     assert_eq!(of(MapName::Global).count() as u64, statistics.global.photons);
     assert_eq!(of(MapName::Caustic).count() as u64, statistics.caustic.photons);
@@ -267,7 +267,7 @@ fn recorded_photons_are_those_of_the_maps() {
     let caustic: f32 = of(MapName::Caustic).map(|p| p.photon.power.mean()).sum();
     assert!(caustic > 0.001 * emitted && caustic < 0.5 * emitted, "{caustic} of {emitted} W");
     assert!(of(MapName::Caustic).all(|p| p.bounces.count() + 1 == u32::from(p.photon.depth)));
-    let again = record_photons(&world, &config, 10, 5, 1, &Silent).expect("nothing cancels");
+    let again = photons_of(&world, &config, 10, 5, 1).expect("nothing cancels");
     assert_ne!(again.photons[0], recorded.photons[0], "another iteration, other photons");
 }
 
@@ -275,7 +275,7 @@ fn recorded_photons_are_those_of_the_maps() {
 fn pictures_show_photons_where_they_lie() {
     let world = room();
     let config = few_photons();
-    let photons = record_photons(&world, &config, 10, 5, 0, &Silent).expect("nothing cancels").photons;
+    let photons = photons_of(&world, &config, 10, 5, 0).expect("nothing cancels").photons;
     let draw = |through_walls| {
         let options = PhotonPicture { color: PhotonColor::Map, size: 1, through_walls };
         photon_picture(&world, &photons, &options)
@@ -293,4 +293,16 @@ fn pictures_show_photons_where_they_lie() {
         let expected: usize = legend.first().map_or(0, |entry| entry.photons);
         assert!(lit <= 9 * expected && expected <= 1, "{color:?}: {lit} pixels of {expected} photons");
     }
+}
+
+/// The photons of an iteration of the photon mapper, if nothing cancels.
+fn photons_of(
+    world: &World,
+    config: &PhotonMapperConfig,
+    samples_per_pixel: u32,
+    seed: u64,
+    iteration: u64,
+) -> Option<MapPhotons> {
+    let method = Method::PhotonMapper(config.clone());
+    record_photons(world, &RenderSettings { method, samples_per_pixel, seed }, iteration, &Silent)
 }

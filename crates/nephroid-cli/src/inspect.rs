@@ -3,7 +3,6 @@
 use std::io::IsTerminal;
 
 use nephroid::handle::Handle;
-use nephroid::integrator::Method;
 use nephroid::laboratory::{Inspector, PixelReport};
 use nephroid::medium::Medium;
 use nephroid::session::RenderSettings;
@@ -122,7 +121,7 @@ impl Inspected<'_> {
     /// What its maps of light in media hold.
     pub fn stored_in_media(&self) -> &'static str {
         match &self.settings.method {
-            Method::PhotonMapper(config) if config.volume_kind == VolumeKind::Beams => "beam",
+            method if method.mapper().is_some_and(|c| c.volume_kind == VolumeKind::Beams) => "beam",
             _ => "photon",
         }
     }

@@ -1,6 +1,6 @@
 //! Which integrator renders, and with which parameters.
 
-use nephroid::integrator::{Method, PathConfig};
+use nephroid::integrator::{Method, PathConfig, PpmConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
 use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
@@ -15,6 +15,8 @@ use crate::parameters::{Draft, PARAMETERS, Parameter, PhotonFlags};
 pub enum Integrator {
     /// Photon mapping.
     PhotonMapper,
+    /// Progressive photon mapping.
+    Ppm,
     /// Path tracing.
     Path,
     /// Path tracing through media.
@@ -28,16 +30,17 @@ impl Integrator {
     pub fn parse(name: &str) -> Result<Self, String> {
         match name {
             "photonmapper" => Ok(Self::PhotonMapper),
+            "ppm" => Ok(Self::Ppm),
             "path" => Ok(Self::Path),
             "volpath" => Ok(Self::VolPath),
             "scene" => Ok(Self::Scene),
-            _ => Err("it must be photonmapper, path, volpath or scene".to_owned()),
+            _ => Err("it must be photonmapper, ppm, path, volpath or scene".to_owned()),
         }
     }
 }
 
 /// Settles the integrator: what the command line says; else the scene's, if it is one for photons;
-/// else the photon mapper.
+/// else the photon mapper. Parameters of the scene's integrator count for the other one for photons, too.
 pub fn choose(
     wanted: Option<Integrator>,
     file: &SceneFile,
@@ -48,11 +51,12 @@ pub fn choose(
     let chosen = match wanted {
         Some(Integrator::Scene) => by_scene(request)?,
         Some(other) => other,
+        None if request.name == "ppm" => Integrator::Ppm,
         None => Integrator::PhotonMapper,
     };
     let mut draft = Draft::default();
     let complaints = match request.name.as_str() {
-        "photonmapper" => read_all(request, &mut draft),
+        "photonmapper" | "ppm" => read_all(request, &mut draft),
         _ => read_depth(request, &mut draft),
     };
     let (errors, warnings): (Vec<_>, Vec<_>) =
@@ -67,12 +71,14 @@ pub fn choose(
         // Checked when the command line was read.
         parameter.set(&mut draft, value).map_err(Failure::Usage)?;
     }
-    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "") {
+    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "ppm" | "") {
         messages.note(&format!(
             "the scene asks for the integrator \"{}\"; rendering with photonmapper (see --integrator)",
             request.name
         ));
     }
+    let plan_photons = !PHOTON_COUNTS.iter().any(|name| draft.has(name));
+    let plan_neighbours = !draft.has("neighbours");
     let mut config = draft.finish();
     if matches!(chosen, Integrator::Path | Integrator::VolPath) {
         let media = chosen == Integrator::VolPath;
@@ -92,13 +98,25 @@ pub fn choose(
         return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
     }
     media_flags::settle(&mut config, file, flags, messages)?;
+    if chosen == Integrator::Ppm {
+        return Ok(Method::Ppm(PpmConfig {
+            mapper: config,
+            plan_photons,
+            plan_neighbours,
+            samples_per_pixel: None,
+        }));
+    }
     Ok(Method::PhotonMapper(config))
 }
+
+/// Parameters that say how many photons to emit; a progressive render plans that where none is given.
+const PHOTON_COUNTS: [&str; 4] = ["photons", "caustic-photons", "emit", "volume-photons"];
 
 /// The scene's word.
 fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
     match request.name.as_str() {
         "" | "photonmapper" => Ok(Integrator::PhotonMapper),
+        "ppm" => Ok(Integrator::Ppm),
         "path" => Ok(Integrator::Path),
         "volpath" | "volpathmis" => Ok(Integrator::VolPath),
         other => {
@@ -165,6 +183,12 @@ pub fn describe(method: &Method) -> Value {
     match method {
         Method::PhotonMapper(config) => {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(config))));
+        }
+        Method::Ppm(PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel }) => {
+            object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
+            object.insert("plan_photons".to_owned(), json!(plan_photons));
+            object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
+            object.insert("samples_per_pass".to_owned(), json!(samples_per_pixel));
         }
         Method::Path(PathConfig { max_depth, direct_lights, .. }) => {
             let config = nephroid::integrator::PhotonMapperConfig {

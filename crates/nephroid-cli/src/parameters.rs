@@ -19,9 +19,16 @@ pub struct Draft {
     config: PhotonMapperConfig,
     /// Kept apart, for it may come from the scene and the cone from the command line.
     cone_k: Option<f32>,
+    /// Names of those that came in.
+    given: Vec<&'static str>,
 }
 
 impl Draft {
+    /// Whether a parameter came in.
+    pub fn has(&self, name: &str) -> bool {
+        self.given.contains(&name)
+    }
+
     /// The configuration. The slope of a cone means nothing to other kernels.
     pub fn finish(mut self) -> PhotonMapperConfig {
         if let (Kernel::Cone { k }, Some(slope)) = (&mut self.config.kernel, self.cone_k) {
@@ -270,6 +277,7 @@ impl Parameter {
 
     /// Puts a value into a draft; the error says what a value should be.
     pub fn set(&self, draft: &mut Draft, value: &str) -> Result<(), String> {
+        draft.given.push(self.name);
         (self.set)(draft, value)
     }
 

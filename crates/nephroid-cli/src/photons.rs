@@ -4,8 +4,9 @@ use std::ffi::OsStr;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-use nephroid::integrator::{MapName, Method};
+use nephroid::integrator::MapName;
 use nephroid::laboratory::{LegendEntry, MapPhoton, PhotonPicture, photon_picture, record_photons};
+use nephroid::session::RenderSettings;
 use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 use nephroid_formats::image::{check_writable, write_png};
@@ -40,11 +41,9 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
     }
     let wanted = Some(Integrator::PhotonMapper);
     let method = method::choose(wanted, &file, &args.run.photons, &mut messages)?;
-    let Method::PhotonMapper(config) = method else {
-        return Err(Failure::Usage("photons are the photon mapper's".to_owned()));
-    };
+    let beams = method.mapper().is_some_and(|config| config.volume_kind == VolumeKind::Beams);
     let in_media = |map: &MapName| matches!(map, MapName::Volume | MapName::VolumeCaustic);
-    if config.volume_kind == VolumeKind::Beams && args.maps.iter().any(in_media) {
+    if beams && args.maps.iter().any(in_media) {
         return Err(Failure::Usage(
             "beams have no place to be drawn or written at: --maps volume and volume-caustic need --volume-kind points"
                 .to_owned(),
@@ -56,8 +55,9 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
         Watch::new(!args.run.quiet && std::io::stderr().is_terminal(), None, None, progress::listen()?);
     let (written, legend) = render::pool(args.run.threads)?.install(|| {
         let world = load::world(file.scene, &file.origins)?;
-        let samples = plan.samples_per_pass;
-        let recorded = record_photons(&world, &config, samples, args.run.seed, args.iteration, &watch);
+        let samples_per_pixel = plan.samples_per_pass;
+        let settings = RenderSettings { method, samples_per_pixel, seed: args.run.seed };
+        let recorded = record_photons(&world, &settings, args.iteration, &watch);
         watch.finish();
         let Some(mut recorded) = recorded else { return Ok((None, Vec::new())) };
         recorded.photons.retain(|photon| args.maps.contains(&photon.map));

@@ -154,11 +154,12 @@ fn render(
     let aovs: Vec<_> = layers.iter().map(|layer| layer.aov).collect();
     let mut session = Session::new(&world, settings.clone(), &watch).with_aovs(&aovs);
     let ended = step_to_the_end(&mut session, plan, &watch);
+    let (film, further) = session.picture();
     Ok(Rendered {
-        film: session.film().clone(),
+        film,
         statistics: session.statistics().clone(),
         remarks: load::remarks(&world, &origins),
-        layers: layers::develop(layers, session.aovs()),
+        layers: layers::develop(layers, further.as_ref()),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
         has_light: has_light(&world),
         ended,

@@ -69,27 +69,38 @@ impl Map {
 
 impl Report<'_> {
     fn maps(&self) -> Vec<Map> {
-        let Method::PhotonMapper(config) = &self.settings.method else { return Vec::new() };
+        let Some(config) = self.settings.method.mapper() else { return Vec::new() };
         let s = &self.rendered.statistics;
+        let plan = s.plan.photons;
+        // What a progressive render wants is what it planned.
+        let planned = matches!(self.settings.method, Method::Ppm(_));
+        let wanted = |asked: u64, plan: MapPlan| if planned { plan.expected_photons } else { asked };
         let what = "photons";
         let mut maps = vec![
-            Map { name: "global", what, wanted: config.photons, plan: s.plan.global, numbers: s.global },
+            Map {
+                name: "global",
+                what,
+                wanted: wanted(config.photons, plan.global),
+                plan: plan.global,
+                numbers: s.global,
+            },
             Map {
                 name: "caustic",
                 what,
-                wanted: config.caustic_photons,
-                plan: s.plan.caustic,
+                wanted: wanted(config.caustic_photons, plan.caustic),
+                plan: plan.caustic,
                 numbers: s.caustic,
             },
         ];
-        if s.plan.volume.paths + s.plan.volume_caustic.paths > 0 {
-            let wanted = config.volume_photons();
+        if plan.volume.paths + plan.volume_caustic.paths > 0 {
+            let asked = config.volume_photons();
             let what = if config.volume_kind == VolumeKind::Beams { "beams" } else { what };
-            let (plan, numbers) = (s.plan.volume, s.volume);
-            maps.push(Map { name: "volume", what, wanted, plan, numbers });
-            let (plan, numbers) = (s.plan.volume_caustic, s.volume_caustic);
-            if plan.paths > 0 {
-                maps.push(Map { name: "volume caustic", what, wanted, plan, numbers });
+            let mut add = |name, plan, numbers| {
+                maps.push(Map { name, what, wanted: wanted(asked, plan), plan, numbers });
+            };
+            add("volume", plan.volume, s.volume);
+            if plan.volume_caustic.paths > 0 {
+                add("volume caustic", plan.volume_caustic, s.volume_caustic);
             }
         }
         maps
@@ -281,7 +292,7 @@ impl Report<'_> {
                 Ended::Interrupted => "interrupted",
             },
             "passes": s.iterations,
-            "samples_per_pass": self.settings.samples_per_pixel,
+            "samples_per_pass": s.plan.camera.samples_per_pixel,
             "samples_per_pixel": s.samples_per_pixel,
             "camera_samples": s.picture.samples,
             "seconds": seconds,

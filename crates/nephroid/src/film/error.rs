@@ -12,7 +12,7 @@ pub struct SizeMismatch {
 }
 
 impl SizeMismatch {
-    pub(super) fn check(first: (u32, u32), second: (u32, u32)) -> Result<(), Self> {
+    pub(crate) fn check(first: (u32, u32), second: (u32, u32)) -> Result<(), Self> {
         if first == second { Ok(()) } else { Err(Self { first, second }) }
     }
 

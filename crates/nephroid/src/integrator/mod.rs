@@ -3,13 +3,15 @@
 mod path;
 mod photon_mapper;
 mod probe;
+pub(crate) mod progressive;
 
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
-pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
-pub(crate) use photon_mapper::{Maps, PhotonMapper};
+pub use photon_mapper::{CameraPlan, DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
+pub(crate) use photon_mapper::{Guides, Maps, PhotonMapper, Turn};
 pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Passed, Probe};
 pub use probe::{FromVolume, LightPart, MapName, MediumLight};
+pub use progressive::PpmConfig;
 
 use crate::color::Rgb;
 use crate::film::Aov;
@@ -19,6 +21,8 @@ use crate::film::Aov;
 pub enum Method {
     /// Two-pass photon mapping.
     PhotonMapper(PhotonMapperConfig),
+    /// Progressive photon mapping.
+    Ppm(PpmConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
 }
@@ -28,8 +32,18 @@ impl Method {
     pub fn name(&self) -> &'static str {
         match self {
             Self::PhotonMapper(_) => "photonmapper",
+            Self::Ppm(_) => "ppm",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
+        }
+    }
+
+    /// How photons are traced and read, if it is a method that does.
+    pub fn mapper(&self) -> Option<&PhotonMapperConfig> {
+        match self {
+            Self::PhotonMapper(config) => Some(config),
+            Self::Ppm(config) => Some(&config.mapper),
+            Self::Path(_) => None,
         }
     }
 }

@@ -5,11 +5,14 @@ use super::inspect_probe::{InspectProbe, InspectedSample};
 use super::photons;
 use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
-use crate::integrator::{Components, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig};
+use crate::integrator::{
+    Components, Estimator, Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PpmConfig,
+    Turn,
+};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
-use crate::session::{RenderSettings, STEP_SAMPLES};
-use crate::transport::{Ledger, PhotonPlan, PixelSample, pixel_key};
+use crate::session::{RenderPlan, RenderSettings, samples_of_step};
+use crate::transport::{Ledger, PixelSample, pixel_key};
 use crate::world::World;
 
 /// A pixel being estimated again: the same samples in the same steps as a
@@ -18,8 +21,9 @@ pub struct Inspector<'w> {
     world: &'w World,
     settings: RenderSettings,
     pixel: (u32, u32),
-    plan: PhotonPlan,
+    plan: RenderPlan,
     maps: Option<(Maps, [Catalogue; 4])>,
+    guides: Option<Guides>,
     film: Film,
     parts: AovFilm,
     iteration: u64,
@@ -48,16 +52,14 @@ impl<'w> Inspector<'w> {
         pixel: (u32, u32),
         observer: &dyn Observer,
     ) -> Self {
-        let plan = match &settings.method {
-            Method::PhotonMapper(config) => photons::plan(world, config, settings.seed, observer),
-            Method::Path(_) => PhotonPlan::default(),
-        };
+        let plan = RenderPlan::new(world, &settings, observer);
         Self {
             world,
             settings,
             pixel,
             plan,
             maps: None,
+            guides: None,
             film: Film::new(1, 1),
             parts: AovFilm::new(1, 1, &[Aov::Direct, Aov::Global, Aov::Caustic, Aov::Emitted, Aov::Medium]),
             iteration: 0,
@@ -69,20 +71,21 @@ impl<'w> Inspector<'w> {
 
     /// Takes the samples of one step of a session. False if the observer cancelled.
     pub fn step(&mut self, observer: &dyn Observer) -> bool {
-        let whole = self.settings.samples_per_pixel.max(1);
+        let whole = self.plan.camera.samples_per_pixel;
         if self.samples >= whole {
             (self.iteration, self.samples, self.maps) = (self.iteration + 1, 0, None);
         }
-        let taken = STEP_SAMPLES.min(whole - self.samples);
+        let taken = samples_of_step(&self.settings.method, whole - self.samples);
         match self.settings.method.clone() {
-            Method::PhotonMapper(config) => {
+            Method::PhotonMapper(config) | Method::Ppm(PpmConfig { mapper: config, .. }) => {
                 if self.maps.is_none() {
                     self.maps = self.build(&config, observer);
                 }
                 let Some((maps, catalogues)) = self.maps.take() else { return false };
-                let mapper = PhotonMapper::new(self.world, &config, &maps, whole);
+                let Some(guides) = self.guides.take() else { return false };
+                let mapper = PhotonMapper::new(self.world, &config, &maps, &guides, &self.plan.camera);
                 self.take(&mapper, Some(&catalogues), taken);
-                self.maps = Some((maps, catalogues));
+                (self.maps, self.guides) = (Some((maps, catalogues)), Some(guides));
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
@@ -95,7 +98,7 @@ impl<'w> Inspector<'w> {
 
     /// Iterations that have all their samples.
     pub fn iterations(&self) -> u64 {
-        self.iteration + u64::from(self.samples >= self.settings.samples_per_pixel.max(1))
+        self.iteration + u64::from(self.samples >= self.plan.camera.samples_per_pixel)
     }
 
     /// Samples taken.
@@ -119,24 +122,22 @@ impl<'w> Inspector<'w> {
         PixelReport { radiance: self.film.develop().pixels[0], light, samples: self.inspected }
     }
 
-    fn build(&self, config: &PhotonMapperConfig, observer: &dyn Observer) -> Option<(Maps, [Catalogue; 4])> {
-        let RenderSettings { samples_per_pixel, seed, .. } = self.settings;
-        let pass = photons::record(
-            self.world,
-            config,
-            &self.plan,
-            samples_per_pixel,
-            seed,
-            self.iteration,
-            observer,
-        )?;
+    fn build(
+        &mut self,
+        config: &PhotonMapperConfig,
+        observer: &dyn Observer,
+    ) -> Option<(Maps, [Catalogue; 4])> {
+        let (world, plan) = (self.world, self.plan);
+        let turn = Turn::new(&self.settings.method, &plan.camera, self.settings.seed, self.iteration);
+        let pass = photons::record(world, config, &plan.photons, &turn, observer)?;
         let (global, of_global) = Catalogue::build(pass.global, pass.global_paths);
         let (caustic, of_caustic) = Catalogue::build(pass.caustic, pass.caustic_paths);
         let (afterglow, of_afterglow) = Catalogue::build(pass.afterglow, pass.caustic_paths);
-        let gathers = config.gather_rays(samples_per_pixel).is_some();
         let (haze, of_haze) = Catalogue::build(pass.haze, pass.global_paths);
-        let volumes = Maps::volumes(self.world, config, &self.plan, seed, self.iteration, observer)?;
-        let maps = Maps::new([global, caustic, afterglow, haze], volumes, gathers, Ledger::default());
+        let volumes = Maps::volumes(world, config, &plan.photons, &turn, observer)?;
+        let maps = Maps::new([global, caustic, afterglow, haze], volumes, turn.blur, Ledger::default());
+        let (given, method) = (self.guides.take(), &self.settings.method);
+        self.guides = Some(Guides::of_turn(given, world, method, &maps, &plan.photons, &turn));
         Some((maps, [of_global, of_caustic, of_afterglow, of_haze]))
     }
 
@@ -168,6 +169,9 @@ impl<'w> Inspector<'w> {
             };
             probe.finish(&mut report);
             self.inspected.push(report);
+        }
+        if matches!(self.settings.method, Method::Ppm(_)) {
+            sum = sum.as_one_estimate();
         }
         self.film.add_iteration(&[sum]);
         self.parts.add_iteration([parts].iter());

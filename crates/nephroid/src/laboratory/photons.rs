@@ -1,9 +1,10 @@
 //! The photons that the maps of an iteration hold.
 
-use crate::integrator::{MapName, PhotonMapperConfig};
+use crate::integrator::{MapName, PhotonMapperConfig, Turn};
 use crate::math::Vec3;
-use crate::observer::{Observer, Phase, Work};
+use crate::observer::Observer;
 use crate::photon_map::{Photon, VolumePhoton};
+use crate::session::{RenderPlan, RenderSettings};
 use crate::transport::{
     Bounces, PhotonPlan, RecordedPass, RecordedPhoton, record_photon_pass, record_volume_pass,
 };
@@ -32,21 +33,22 @@ pub struct MapPhotons {
     pub plan: PhotonPlan,
 }
 
-/// Traces the photons that iteration `iteration` of a render with these settings has in its maps.
-/// `samples_per_pixel` is that of the render, of an iteration. Beams in media are left out. `None` if the observer
-/// cancelled.
+/// Traces the photons that iteration `iteration` of a render with these settings has in its maps; none for methods
+/// without photons. Beams in media are left out. `None` if the observer cancelled.
 pub fn record_photons(
     world: &World,
-    config: &PhotonMapperConfig,
-    samples_per_pixel: u32,
-    seed: u64,
+    settings: &RenderSettings,
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<MapPhotons> {
-    let plan = plan(world, config, seed, observer);
-    let pass = record(world, config, &plan, samples_per_pixel, seed, iteration, observer)?;
-    let (settings, targets) = (config.walk_settings(), config.targets());
-    let media = record_volume_pass(world, &settings, &plan, &targets, seed, iteration, observer)?;
+    let RenderPlan { photons: plan, camera } = RenderPlan::new(world, settings, observer);
+    let Some(config) = settings.method.mapper() else {
+        return Some(MapPhotons { photons: Vec::new(), plan });
+    };
+    let turn = Turn::new(&settings.method, &camera, settings.seed, iteration);
+    let pass = record(world, config, &plan, &turn, observer)?;
+    let (walks, targets) = (config.walk_settings(), config.targets());
+    let media = record_volume_pass(world, &walks, &plan, &targets, turn.seed, iteration, observer)?;
     let volume: Vec<_> = media.volume.into_iter().map(anywhere).collect();
     let volume_caustic = media.volume_caustic.into_iter().map(anywhere).collect();
     let lists = [
@@ -76,27 +78,14 @@ fn anywhere(recorded: RecordedPhoton<VolumePhoton>) -> RecordedPhoton {
     RecordedPhoton { photon: Photon { position, power, wi, normal: Vec3::ZERO, depth, light }, path, bounces }
 }
 
-/// The plan that a session makes.
-pub(super) fn plan(
-    world: &World,
-    config: &PhotonMapperConfig,
-    seed: u64,
-    observer: &dyn Observer,
-) -> PhotonPlan {
-    let _work = Work::begin(observer, Phase::Pilot, 1);
-    PhotonPlan::by_pilot(world, &config.walk_settings(), &config.targets(), seed)
-}
-
 /// The photon pass that a session makes, recorded.
 pub(super) fn record(
     world: &World,
     config: &PhotonMapperConfig,
     plan: &PhotonPlan,
-    samples_per_pixel: u32,
-    seed: u64,
-    iteration: u64,
+    turn: &Turn,
     observer: &dyn Observer,
 ) -> Option<RecordedPass> {
-    let extras = config.extras(config.gather_rays(samples_per_pixel).is_some());
-    record_photon_pass(world, &config.walk_settings(), plan, extras, seed, iteration, observer)
+    let (settings, extras) = (config.walk_settings(), config.extras(turn.gathers));
+    record_photon_pass(world, &settings, plan, extras, turn.seed, turn.iteration, observer)
 }

@@ -46,6 +46,18 @@ pub enum Bandwidth {
         /// The largest radius; see [`PhotonMap::default_max_radius`].
         max_radius: f32,
     },
+    /// A part of the radius at which `k` photons are found. The photons within are as many as the part of the area is of
+    /// all, so the estimate stays right, and its blur becomes as small as one likes.
+    Part {
+        /// Photons to find, as above.
+        k: u32,
+        /// The largest radius of which the part is taken.
+        max_radius: f32,
+        /// The part, above 0 and at most 1.
+        part: f32,
+        /// The radius is never smaller than this.
+        least: f32,
+    },
     /// The same everywhere.
     Fixed {
         /// The radius.
@@ -98,12 +110,18 @@ pub fn gather<I: PhotonIndex>(
     scratch: &mut NearestList,
     mut add: impl FnMut(&Photon, f32),
 ) -> Gathered {
-    let (k, max_radius) = match bandwidth {
-        Bandwidth::Nearest { k, max_radius } if max_radius > 0.0 => (k.max(2) as usize, max_radius),
-        Bandwidth::Nearest { max_radius: radius, .. } | Bandwidth::Fixed { radius } => {
+    let (k, max_radius, part, least) = match bandwidth {
+        Bandwidth::Nearest { k, max_radius } if max_radius > 0.0 => (k.max(2) as usize, max_radius, 1.0, 0.0),
+        Bandwidth::Part { k, max_radius, part, least } if max_radius > 0.0 => {
+            (k.max(2) as usize, max_radius, part, least)
+        }
+        Bandwidth::Nearest { max_radius: radius, .. }
+        | Bandwidth::Part { max_radius: radius, .. }
+        | Bandwidth::Fixed { radius } => {
             return gather_within(map, query, kernel, radius, add);
         }
     };
+    let narrowed = |radius: f32| (radius * part).max(least);
     map.index().nearest(
         query.position,
         max_radius * max_radius,
@@ -114,17 +132,28 @@ pub fn gather<I: PhotonIndex>(
     );
     let found = before_a_gap(scratch, |d_sq| d_sq);
     if found < k.min(ENOUGH) {
-        return gather_within(map, query, kernel, max_radius, add);
+        return gather_within(map, query, kernel, narrowed(max_radius), add);
     }
     let count = found.min(k) - 1;
-    let radius = scratch.get(count).map_or(max_radius, |last| last.dist_sq.sqrt());
-    let Some(spread) = Spread::new(kernel, radius) else {
-        return gather_within(map, query, kernel, max_radius, add);
+    let whole = scratch.get(count).map_or(max_radius, |last| last.dist_sq.sqrt());
+    let radius = narrowed(whole);
+    let spread = Spread::new(kernel, radius).filter(|_| radius <= whole);
+    let Some(spread) = spread else {
+        return gather_within(
+            map,
+            query,
+            kernel,
+            if whole > 0.0 { radius } else { narrowed(max_radius) },
+            add,
+        );
     };
-    for neighbor in scratch.iter().take(count) {
+    let mut within = 0;
+    // All of them if it is the whole radius.
+    for neighbor in scratch.iter().take(count).filter(|n| part == 1.0 || n.dist_sq <= radius * radius) {
         add(&map.photon(neighbor.place), spread.weight(neighbor.dist_sq));
+        within += 1;
     }
-    Gathered { radius, count: count as u32 }
+    Gathered { radius, count: within }
 }
 
 /// How many of the photons found lie before a gap: a ring much larger than the disc within, and not one

@@ -4,6 +4,7 @@
 
 mod beams;
 mod block;
+mod blur;
 mod brute_force;
 mod estimate;
 mod grid_build;
@@ -23,6 +24,7 @@ mod index_tests;
 mod testing;
 
 pub use beams::{Beam, BeamMap, BeamWidth, Beams};
+pub use blur::Blur;
 pub use brute_force::BruteForce;
 pub use estimate::{Bandwidth, Gathered, Query, gather};
 pub use grid_tree::GridTree;

@@ -1,3 +1,4 @@
+use super::camera_plan::CameraPlan;
 use crate::light::SphereSampling;
 use crate::photon_map::{Bandwidth, Kernel, PhotonMap};
 use crate::transport::{DirectLights, Extras, Fog, LightChoice, PhotonTargets, VolumeKind, WalkSettings};
@@ -210,8 +211,15 @@ impl PhotonMapperConfig {
         Extras { direct: self.direct == DirectSource::Map, unseen: gathers }
     }
 
-    /// Gather rays of each camera sample; `None` reads the maps on the spot.
-    pub(crate) fn gather_rays(&self, samples_per_pixel: u32) -> Option<u32> {
+    /// The camera samples of an iteration that has so many of each pixel.
+    pub(crate) fn camera_plan(&self, samples_per_pixel: u32) -> CameraPlan {
+        let samples_per_pixel = samples_per_pixel.max(1);
+        let stride = reading_stride(samples_per_pixel);
+        CameraPlan { samples_per_pixel, stride, gather_rays: self.gather_rays(samples_per_pixel / stride) }
+    }
+
+    /// Gather rays of each camera sample that reads the maps; `None` reads them on the spot.
+    fn gather_rays(&self, samples_per_pixel: u32) -> Option<u32> {
         match self.final_gather {
             FinalGather::Off | FinalGather::Rays(0) => None,
             FinalGather::Rays(n) => Some(n),
@@ -237,4 +245,14 @@ impl PhotonMapperConfig {
         let k = ((self.neighbours as f32 * factor).round() as u32).max(2);
         Bandwidth::Nearest { k, max_radius: self.max_radius.unwrap_or_else(|| map.default_max_radius(k)) }
     }
+}
+
+/// Of how many camera samples one reads the maps, and counts for the others, which bring direct light
+/// and emission only: what a map shows hardly changes within a pixel. At least 4 samples of a pixel
+/// read. The steps of a session are whole multiples, so that a render may stop after any of them.
+fn reading_stride(samples_per_pixel: u32) -> u32 {
+    [4, 2]
+        .into_iter()
+        .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 4 * s)
+        .unwrap_or(1)
 }

@@ -5,9 +5,10 @@ mod gather_rays;
 mod in_scatter;
 mod march;
 
-use super::Maps;
+use super::camera_plan::CameraPlan;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
+use super::{Guides, Maps};
 use crate::color::Rgb;
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
@@ -59,6 +60,7 @@ pub(crate) struct PhotonMapper<'a> {
     world: &'a World,
     config: &'a PhotonMapperConfig,
     maps: &'a Maps,
+    guides: &'a Guides,
     gather_rays: Option<u32>,
     /// Every so many-th sample reads the maps, for all.
     stride: u32,
@@ -69,16 +71,6 @@ pub(crate) struct PhotonMapper<'a> {
     haze_bandwidth: Bandwidth,
     /// Radius of the estimates where gather rays land.
     global_radius: f32,
-}
-
-/// Of how many camera samples one reads the maps, and counts for the others, which bring direct light
-/// and emission only: what a map shows hardly changes within a pixel. At least 4 samples of a pixel
-/// read. The steps of a session are whole multiples, so that a render may stop after any of them.
-fn reading_stride(samples_per_pixel: u32) -> u32 {
-    [4, 2]
-        .into_iter()
-        .find(|s| samples_per_pixel.is_multiple_of(*s) && samples_per_pixel >= 4 * s)
-        .unwrap_or(1)
 }
 
 /// The way of a camera path that was split at specular surfaces.
@@ -130,20 +122,23 @@ impl<'a> PhotonMapper<'a> {
         world: &'a World,
         config: &'a PhotonMapperConfig,
         maps: &'a Maps,
-        samples_per_pixel: u32,
+        guides: &'a Guides,
+        plan: &CameraPlan,
     ) -> Self {
-        let stride = reading_stride(samples_per_pixel);
+        let bandwidth = |map| maps.blur.narrow(config.bandwidth(map), 2);
+        let global_radius = config.radius.unwrap_or_else(|| maps.global.typical_radius(GATHER_PHOTONS));
         Self {
             world,
             config,
             maps,
-            gather_rays: config.gather_rays(samples_per_pixel / stride),
-            stride,
-            global_bandwidth: config.bandwidth(&maps.global),
-            caustic_bandwidth: config.bandwidth(&maps.caustic),
-            afterglow_bandwidth: config.bandwidth(&maps.afterglow),
-            haze_bandwidth: config.bandwidth(&maps.haze),
-            global_radius: config.radius.unwrap_or_else(|| maps.global.typical_radius(GATHER_PHOTONS)),
+            guides,
+            stride: plan.stride,
+            gather_rays: plan.gather_rays,
+            global_bandwidth: bandwidth(&maps.global),
+            caustic_bandwidth: bandwidth(&maps.caustic),
+            afterglow_bandwidth: bandwidth(&maps.afterglow),
+            haze_bandwidth: bandwidth(&maps.haze),
+            global_radius: global_radius * maps.blur.factor(2),
         }
     }
 
@@ -282,7 +277,7 @@ impl<'a> PhotonMapper<'a> {
                 None => return,
             };
             let vertex = Vertex { bsdf: &bsdf, ..*vertex };
-            let guide = self.maps.guides.at(vertex.point().position, vertex.facing_normal(), tools.neighbors);
+            let guide = self.guides.at(vertex.point().position, vertex.facing_normal(), tools.neighbors);
             let wanted = self.weight_of_gathering(&bsdf, guide.as_ref(), beside, branch.share);
             let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
             let key = sample.key.with(branch.number);

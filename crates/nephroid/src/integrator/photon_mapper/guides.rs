@@ -3,8 +3,12 @@
 use rayon::prelude::*;
 
 use super::guide::{Facing, Guide};
+use super::{Maps, Turn};
+use crate::integrator::{Method, progressive};
 use crate::math::Vec3;
 use crate::photon_map::{Bandwidth, GridTree, Kernel, NearestList, PhotonIndex, PhotonMap, Query, gather};
+use crate::transport::PhotonPlan;
+use crate::world::World;
 
 /// One guide is made for so many photons of the map, at one of them …
 const PHOTONS_PER_GUIDE: usize = 64;
@@ -21,7 +25,7 @@ const MIN_NORMAL_COSINE: f32 = 0.95;
 /// Densities over the hemisphere at some of the photons of a map. Any may be used anywhere without
 /// bias; near its photon, on a surface of about the same normal, it also follows the light.
 #[derive(Debug)]
-pub(super) struct Guides {
+pub(crate) struct Guides {
     index: GridTree,
     /// By place in the index, like the normals.
     guides: Vec<Guide>,
@@ -33,6 +37,23 @@ impl Guides {
     /// No guides.
     pub fn none() -> Self {
         Self::new(&PhotonMap::build(crate::photon_map::Photons::default()))
+    }
+
+    /// Those of an iteration: of its own photons, or in a series of iterations those that the first was given.
+    pub fn of_turn(
+        given: Option<Self>,
+        world: &World,
+        method: &Method,
+        maps: &Maps,
+        plan: &PhotonPlan,
+        turn: &Turn,
+    ) -> Self {
+        match (method, given) {
+            _ if !turn.gathers => Self::none(),
+            (Method::Ppm(_), Some(guides)) => guides,
+            (Method::Ppm(config), None) => progressive::guides(world, config, plan, turn.seed),
+            _ => Self::new(&maps.global),
+        }
     }
 
     /// Makes the guides of a map.
@@ -52,7 +73,7 @@ impl Guides {
     }
 
     /// The nearest guide for a point of a surface; `None` where no photon is near.
-    pub fn at(&self, position: Vec3, normal: Vec3, scratch: &mut NearestList) -> Option<Facing<'_>> {
+    pub(super) fn at(&self, position: Vec3, normal: Vec3, scratch: &mut NearestList) -> Option<Facing<'_>> {
         let alike = |place: u32, dist_sq| {
             (self.normals[place as usize].dot(normal) >= MIN_NORMAL_COSINE).then_some(dist_sq)
         };

@@ -3,19 +3,23 @@
 //! bounce later, and one of the light of media), and in media into maps of their own, then camera paths that
 //! estimate radiance from them.
 
+mod camera_plan;
 mod config;
 mod estimate;
 mod guide;
 mod guides;
+mod turn;
 mod volume_index;
 
+pub use camera_plan::CameraPlan;
 pub use config::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use estimate::PhotonMapper;
-use guides::Guides;
+pub(crate) use guides::Guides;
+pub(crate) use turn::Turn;
 pub(crate) use volume_index::VolumeIndex;
 
 use crate::observer::{Observer, Phase, Work};
-use crate::photon_map::PhotonMap;
+use crate::photon_map::{Blur, PhotonMap};
 use crate::transport::{Ledger, PhotonPlan, photon_pass, volume_pass};
 use crate::world::World;
 
@@ -29,7 +33,8 @@ pub(crate) struct Maps {
     pub haze: PhotonMap,
     /// Light in media but for caustics, and those.
     pub volumes: [VolumeIndex; 2],
-    guides: Guides,
+    /// How wide its estimates are.
+    pub blur: Blur,
     pub ledger: Ledger,
 }
 
@@ -39,15 +44,13 @@ impl Maps {
         world: &World,
         config: &PhotonMapperConfig,
         plan: &PhotonPlan,
-        gathers: bool,
-        seed: u64,
-        iteration: u64,
+        turn: &Turn,
         observer: &dyn Observer,
     ) -> Option<Self> {
         let settings = config.walk_settings();
-        let extras = config.extras(gathers);
-        let pass = photon_pass(world, &settings, plan, extras, seed, iteration, observer)?;
-        let volumes = Self::volumes(world, config, plan, seed, iteration, observer)?;
+        let extras = config.extras(turn.gathers);
+        let pass = photon_pass(world, &settings, plan, extras, turn.seed, turn.iteration, observer)?;
+        let volumes = Self::volumes(world, config, plan, turn, observer)?;
         let work = Work::begin(observer, Phase::Maps, 4);
         let map = |photons| {
             let map = PhotonMap::build(photons);
@@ -58,7 +61,7 @@ impl Maps {
             || rayon::join(|| map(pass.global), || map(pass.caustic)),
             || rayon::join(|| map(pass.afterglow), || map(pass.haze)),
         );
-        Some(Self::new([global, caustic, afterglow, haze], volumes, gathers, pass.ledger))
+        Some(Self::new([global, caustic, afterglow, haze], volumes, turn.blur, pass.ledger))
     }
 
     /// The maps of light in media of an iteration. `None` if cancelled.
@@ -66,13 +69,13 @@ impl Maps {
         world: &World,
         config: &PhotonMapperConfig,
         plan: &PhotonPlan,
-        seed: u64,
-        iteration: u64,
+        turn: &Turn,
         observer: &dyn Observer,
     ) -> Option<[VolumeIndex; 2]> {
         let (settings, targets) = (config.walk_settings(), config.targets());
-        let [all, caustics] = volume_pass(world, &settings, plan, &targets, seed, iteration, observer)?;
-        let build = |photons| VolumeIndex::build(photons, config);
+        let [all, caustics] =
+            volume_pass(world, &settings, plan, &targets, turn.seed, turn.iteration, observer)?;
+        let build = |photons| VolumeIndex::build(photons, config, turn.blur);
         Some(rayon::join(|| build(all), || build(caustics)).into())
     }
 
@@ -80,10 +83,9 @@ impl Maps {
     pub fn new(
         [global, caustic, afterglow, haze]: [PhotonMap; 4],
         volumes: [VolumeIndex; 2],
-        gathers: bool,
+        blur: Blur,
         ledger: Ledger,
     ) -> Self {
-        let guides = if gathers { Guides::new(&global) } else { Guides::none() };
-        Self { global, caustic, afterglow, haze, volumes, guides, ledger }
+        Self { global, caustic, afterglow, haze, volumes, blur, ledger }
     }
 }

@@ -1,5 +1,5 @@
 use super::config::PhotonMapperConfig;
-use crate::photon_map::{BeamMap, BeamWidth, VolumeMap};
+use crate::photon_map::{BeamMap, BeamWidth, Blur, VolumeMap};
 use crate::transport::InMedia;
 
 /// Light in media, as the camera pass looks it up.
@@ -9,11 +9,14 @@ pub(crate) enum VolumeIndex {
 }
 
 impl VolumeIndex {
-    pub fn build(photons: InMedia, config: &PhotonMapperConfig) -> Self {
+    pub fn build(photons: InMedia, config: &PhotonMapperConfig, blur: Blur) -> Self {
         match photons {
-            InMedia::Points(points) => Self::Points(VolumeMap::build(points, config.volume_neighbours())),
+            InMedia::Points(points) => {
+                Self::Points(VolumeMap::build_narrow(points, config.volume_neighbours(), blur))
+            }
             InMedia::Beams(beams) => {
-                Self::Beams(BeamMap::build(beams, BeamWidth::Crossing { k: config.beam_crossings }))
+                let k = config.beam_crossings * blur.factor(1);
+                Self::Beams(BeamMap::build(beams, BeamWidth::Crossing { k }))
             }
         }
     }

@@ -40,10 +40,12 @@ impl VolumeMap {
         neighbors: &mut NearestList,
         mut visit: impl FnMut(&VolumePhoton, f32),
     ) -> Gathered {
-        let (k, max_radius) = match bandwidth {
-            Bandwidth::Nearest { k, max_radius } => (k.max(2) as usize, max_radius),
-            Bandwidth::Fixed { radius } => (0, radius),
+        let (k, max_radius, part, least) = match bandwidth {
+            Bandwidth::Nearest { k, max_radius } => (k.max(2) as usize, max_radius, 1.0, 0.0),
+            Bandwidth::Part { k, max_radius, part, least } => (k.max(2) as usize, max_radius, part, least),
+            Bandwidth::Fixed { radius } => (0, radius, 1.0, 0.0),
         };
+        let narrowed = |radius: f32| (radius * part).max(least);
         let Some(cloud) = self.cloud(query.medium) else {
             return Gathered { radius: max_radius, count: 0 };
         };
@@ -56,17 +58,22 @@ impl VolumeMap {
         let volume = |radius_sq: f64| radius_sq * radius_sq.sqrt();
         let found = before_a_gap(neighbors, volume);
         if found < k.min(ENOUGH) {
-            return within(cloud, query, kernel, max_radius, visit);
+            return within(cloud, query, kernel, narrowed(max_radius), visit);
         }
         let count = found.min(k) - 1;
-        let radius = neighbors.get(count).map_or(max_radius, |last| last.dist_sq.sqrt());
-        let Some(spread) = Spread3::new(kernel, radius) else {
-            return within(cloud, query, kernel, max_radius, visit);
+        let whole = neighbors.get(count).map_or(max_radius, |last| last.dist_sq.sqrt());
+        let radius = narrowed(whole);
+        let spread = Spread3::new(kernel, radius).filter(|_| radius <= whole);
+        let Some(spread) = spread else {
+            let radius = if whole > 0.0 { radius } else { narrowed(max_radius) };
+            return within(cloud, query, kernel, radius, visit);
         };
-        for neighbor in neighbors.iter().take(count) {
+        let mut inside = 0;
+        for neighbor in neighbors.iter().take(count).filter(|n| part == 1.0 || n.dist_sq <= radius * radius) {
             visit(&cloud.photon(neighbor.place), spread.weight(neighbor.dist_sq));
+            inside += 1;
         }
-        Gathered { radius, count: count as u32 }
+        Gathered { radius, count: inside }
     }
 }
 

@@ -36,6 +36,7 @@ fn brute_force(map: &VolumeMap, center: Vec3, kernel: Kernel, bandwidth: Bandwid
     let (k, radius) = match bandwidth {
         Bandwidth::Fixed { radius } => (usize::MAX, radius),
         Bandwidth::Nearest { k, max_radius } => (k as usize, max_radius),
+        Bandwidth::Part { .. } => panic!("a part has a test of its own"),
     };
     all.retain(|d_sq| *d_sq <= radius * radius);
     let mut radius_sq = radius * radius;

@@ -16,15 +16,16 @@ pub(super) struct Cloud {
 }
 
 impl Cloud {
-    /// Of at least one photon. `k`: see [`VolumeMap::build`](super::VolumeMap::build).
+    /// Of at least one photon. `k` and `factor`: see [`VolumeMap::build`](super::VolumeMap::build).
     pub fn build(
         medium: u16,
         len: usize,
         point: impl Fn(usize) -> (Vec3, VolumePayload) + Sync,
         k: u32,
+        factor: f32,
     ) -> Self {
         let (index, payloads) = GridTree::build_with(len, point);
-        let radii = Radii::new(&index, k);
+        let radii = Radii::new(&index, k, factor);
         let balls = Balls::build(&index.blocks, &radii);
         Self { medium, index, payloads, radii, balls }
     }

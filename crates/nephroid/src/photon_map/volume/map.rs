@@ -2,7 +2,7 @@ use super::cloud::Cloud;
 use super::payload::VolumePayload;
 use super::photon::{VolumePhoton, VolumePhotons};
 use crate::math::{Bounds, Vec3};
-use crate::photon_map::PhotonIndex;
+use crate::photon_map::{Blur, PhotonIndex};
 
 /// Photons in media. Never changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,11 @@ impl VolumeMap {
     ///
     /// Positions must be finite. Panics with 2³² photons or more.
     pub fn build(photons: VolumePhotons, k: u32) -> Self {
+        Self::build_narrow(photons, k, Blur::WHOLE)
+    }
+
+    /// As [`Self::build`], with the balls that rays see narrower: a ray blurs two dimensions.
+    pub fn build_narrow(photons: VolumePhotons, k: u32, blur: Blur) -> Self {
         let (all, emitted) = (photons.as_slice(), photons.emitted());
         assert!(u32::try_from(all.len()).is_ok(), "a map holds fewer than 2^32 photons, not {}", all.len());
         let share = (1.0 / emitted.max(1) as f64) as f32;
@@ -33,7 +38,7 @@ impl VolumeMap {
         };
         let (mut clouds, mut firsts, mut first) = (Vec::new(), Vec::new(), 0);
         for (medium, numbers) in by_medium(all) {
-            clouds.push(Cloud::build(medium, numbers.len(), |i| point(numbers[i]), k));
+            clouds.push(Cloud::build(medium, numbers.len(), |i| point(numbers[i]), k, blur.factor(2)));
             firsts.push(first);
             first += numbers.len() as u32;
         }

@@ -36,7 +36,9 @@ impl Radii {
     /// Whatever the radius, the kernel of a photon integrates to one over any plane across a ray, so all
     /// rays of a direction together see exactly its power. That asks only that its radius is the same for
     /// all rays. What a wrong radius changes is the blur.
-    pub fn new(index: &GridTree, k: u32) -> Self {
+    ///
+    /// All of it is multiplied by `factor`.
+    pub fn new(index: &GridTree, k: u32, factor: f32) -> Self {
         let (_, whole) = index.bounds().bounding_sphere();
         let k = k.max(2);
         let middle = |group: usize| {
@@ -55,7 +57,7 @@ impl Radii {
         let mut all = Self { radii: Vec::new(), volume: mean(volumes), whole };
         let largest = all.default_max_radius(k);
         let radius = |&(radius, _): &(f32, usize)| if radius > 0.0 { radius.min(largest) } else { largest };
-        all.radii = found.iter().map(radius).collect();
+        all.radii = found.iter().map(|found| factor * radius(found)).collect();
         all
     }
 

@@ -152,7 +152,9 @@ impl PhotonMapper<'_> {
             VolumeIndex::Points(map) if map.is_empty() => {}
             VolumeIndex::Points(map) => match self.config.volume_estimate {
                 VolumeEstimate::Beam => {
-                    let margin = map.default_max_radius_in(segment.medium(), self.config.volume_neighbours());
+                    let largest =
+                        map.default_max_radius_in(segment.medium(), self.config.volume_neighbours());
+                    let margin = largest * self.maps.blur.factor(2);
                     let [before, beyond] = segment.open.map(|open| if open { margin } else { 0.0 });
                     let ray = Ray::new(segment.ray.at(-before), segment.ray.direction);
                     let length = before + segment.end + beyond;

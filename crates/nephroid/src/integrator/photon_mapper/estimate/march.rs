@@ -87,7 +87,8 @@ impl PhotonMapper<'_> {
     ) -> (Rgb, Gathered) {
         let (wo, phase) = (-segment.ray.direction, segment.matter.phase());
         let (k, medium) = (self.config.volume_neighbours(), segment.medium());
-        let bandwidth = Bandwidth::Nearest { k, max_radius: map.default_max_radius_in(medium, k) };
+        let nearest = Bandwidth::Nearest { k, max_radius: map.default_max_radius_in(medium, k) };
+        let bandwidth = self.maps.blur.narrow(nearest, 3);
         let max_photon_depth =
             self.config.max_depth.map(|max| max.saturating_sub(segment.depth).min(65_535) as u16);
         let query = VolumeQuery { position, medium, max_photon_depth };

@@ -1,0 +1,87 @@
+//! The camera pass of a step, with further values of the picture or without.
+
+use crate::film::{AovFilm, AovSum, Film, PixelSum};
+use crate::integrator::{AovProbe, Estimator, PictureSums};
+use crate::observer::Observer;
+use crate::photon_map::NearestList;
+use crate::transport::{CameraPass, Exposure, camera_pass};
+use crate::world::World;
+
+/// What a camera pass brings, with further values or without.
+pub(super) enum Exposed {
+    Picture(Exposure<PixelSum, PictureSums>),
+    WithAovs(Exposure<(PixelSum, AovSum), PictureSums>),
+}
+
+impl Exposed {
+    /// The picture's light by kind, and whether every pixel has its samples.
+    pub fn total(&self) -> (&PictureSums, bool) {
+        match self {
+            Self::Picture(exposure) => (&exposure.total, exposure.complete),
+            Self::WithAovs(exposure) => (&exposure.total, exposure.complete),
+        }
+    }
+
+    /// Has the samples of each pixel count as one for the variance, because they share photons.
+    pub fn count_as_one_estimate(&mut self) {
+        match self {
+            Self::Picture(exposure) => exposure.sums.iter_mut().for_each(|sum| *sum = sum.as_one_estimate()),
+            Self::WithAovs(exposure) => {
+                exposure.sums.iter_mut().for_each(|(sum, _)| *sum = sum.as_one_estimate());
+            }
+        }
+    }
+
+    /// Adds it to films.
+    pub fn add_to(&self, film: &mut Film, aovs: Option<&mut AovFilm>) {
+        match self {
+            Self::Picture(exposure) => film.add_iteration(&exposure.sums),
+            Self::WithAovs(exposure) => {
+                let picture: Vec<PixelSum> = exposure.sums.iter().map(|(sum, _)| *sum).collect();
+                film.add_iteration(&picture);
+                if let Some(aovs) = aovs {
+                    aovs.add_iteration(exposure.sums.iter().map(|(_, sums)| sums));
+                }
+            }
+        }
+    }
+}
+
+/// Takes the samples of a step.
+pub(super) fn expose(
+    world: &World,
+    estimator: &impl Estimator,
+    pass: &CameraPass,
+    with_aovs: bool,
+    observer: &dyn Observer,
+) -> Exposed {
+    let join = PictureSums::append;
+    if with_aovs {
+        return Exposed::WithAovs(camera_pass(
+            world,
+            pass,
+            observer,
+            NearestList::new,
+            join,
+            |mut sample, weight, neighbors, (picture, aovs): &mut (PixelSum, AovSum), total| {
+                let mut probe = AovProbe::new(&sample);
+                let light = estimator.radiance(&mut sample, neighbors, &mut probe);
+                total.add(&light);
+                picture.add(light.total(), weight);
+                aovs.add(&probe.finish(&light), weight);
+            },
+        ));
+    }
+    Exposed::Picture(camera_pass(
+        world,
+        pass,
+        observer,
+        NearestList::new,
+        join,
+        |mut sample, weight, neighbors, picture: &mut PixelSum, total| {
+            let light = estimator.radiance(&mut sample, neighbors, &mut ());
+            total.add(&light);
+            picture.add(light.total(), weight);
+        },
+    ))
+}

@@ -1,0 +1,214 @@
+//! A render in progress: an iteration at a time, in short steps that can be stopped between.
+
+mod expose;
+mod place;
+mod plan;
+mod statistics;
+
+use expose::{Exposed, expose};
+pub use place::Place;
+pub use plan::RenderPlan;
+pub use statistics::{MapStatistics, Statistics};
+
+use crate::film::{Aov, AovFilm, Film, SizeMismatch};
+use crate::integrator::{Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn};
+use crate::observer::Observer;
+use crate::transport::{CameraPass, Ledger};
+use crate::world::World;
+
+/// Camera samples a pixel gets in one step: a multiple of the strides at which photon maps are read.
+const STEP_SAMPLES: u32 = 4;
+
+/// Camera samples of each pixel in the next step of an iteration that has so many left to take. Those of a progressive
+/// iteration share photons and are few, and so they are one step and one estimate.
+pub(crate) fn samples_of_step(method: &Method, left: u32) -> u32 {
+    if matches!(method, Method::Ppm(_)) { left } else { STEP_SAMPLES.min(left) }
+}
+
+/// How to render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// The integrator.
+    pub method: Method,
+    /// Camera samples of each pixel in each iteration.
+    pub samples_per_pixel: u32,
+    /// Everything random follows from it.
+    pub seed: u64,
+}
+
+/// A render in progress. Dropping it cancels.
+pub struct Session<'w> {
+    world: &'w World,
+    settings: RenderSettings,
+    plan: RenderPlan,
+    film: Film,
+    aovs: Option<AovFilm>,
+    /// A step that was stopped, as far as it got.
+    torn: Option<Exposed>,
+    maps: Option<Maps>,
+    guides: Option<Guides>,
+    ledger: Ledger,
+    place: Place,
+    statistics: Statistics,
+}
+
+impl<'w> Session<'w> {
+    /// Prepares a render; photon methods trace their pilot paths.
+    pub fn new(world: &'w World, settings: RenderSettings, observer: &dyn Observer) -> Self {
+        let plan = RenderPlan::new(world, &settings, observer);
+        Self::with_plan(world, settings, plan)
+    }
+
+    /// Prepares a render that was planned before, with the same settings.
+    pub fn with_plan(world: &'w World, settings: RenderSettings, plan: RenderPlan) -> Self {
+        let window = world.scene().film.window();
+        Self {
+            world,
+            settings,
+            plan,
+            film: Film::new(window.width, window.height),
+            aovs: None,
+            torn: None,
+            maps: None,
+            guides: None,
+            ledger: Ledger::default(),
+            place: Place::default(),
+            statistics: Statistics { plan, ..Statistics::default() },
+        }
+    }
+
+    /// Keeps further values of each pixel; none for an empty list. The picture stays the same to the bit.
+    #[must_use]
+    pub fn with_aovs(mut self, aovs: &[Aov]) -> Self {
+        let (width, height) = (self.film.width(), self.film.height());
+        self.aovs = (!aovs.is_empty()).then(|| AovFilm::new(width, height, aovs));
+        self
+    }
+
+    /// Begins at a place further on, for a render that is shared out or was interrupted.
+    #[must_use]
+    pub fn starting_at(mut self, place: Place) -> Self {
+        (self.place, self.maps) = (place, None);
+        self
+    }
+
+    /// Goes on with the films of what was rendered before.
+    pub fn with_films(mut self, film: Film, aovs: Option<AovFilm>) -> Result<Self, SizeMismatch> {
+        SizeMismatch::check((self.film.width(), self.film.height()), (film.width(), film.height()))?;
+        (self.film, self.aovs) = (film, aovs);
+        Ok(self)
+    }
+
+    /// Renders on: the photons of an iteration if one begins, and a few samples of every pixel.
+    /// Returns false if the observer cancelled: what was finished, tile by tile, is then in [`Self::picture`] alone, and
+    /// the session is at its end.
+    pub fn step(&mut self, observer: &dyn Observer) -> bool {
+        let whole = self.plan.camera.samples_per_pixel;
+        if self.place.samples >= whole {
+            (self.place, self.maps) = (Place { iteration: self.place.iteration + 1, samples: 0 }, None);
+        }
+        let pass = CameraPass {
+            seed: self.settings.seed,
+            iteration: self.place.iteration,
+            first_sample: self.place.samples,
+            samples: samples_of_step(&self.settings.method, whole - self.place.samples),
+        };
+        let done = match self.settings.method.clone() {
+            Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
+            Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
+            Method::Path(config) => {
+                let tracer = PathTracer { world: self.world, config: &config };
+                let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                self.take(exposed)
+            }
+        };
+        if done {
+            self.place.samples += pass.samples;
+            self.statistics.samples_per_pixel += u64::from(pass.samples);
+            self.statistics.iterations +=
+                u64::from(pass.first_sample == 0 || self.statistics.iterations == 0);
+        }
+        done
+    }
+
+    /// Where the render is: what was begun with and what was done since.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Whether the current iteration has all its samples.
+    pub fn iteration_is_complete(&self) -> bool {
+        self.place.samples >= self.plan.camera.samples_per_pixel
+    }
+
+    /// The film so far: whole steps, up to [`Self::place`].
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// Further values of the picture so far, if [asked for](Self::with_aovs).
+    pub fn aovs(&self) -> Option<&AovFilm> {
+        self.aovs.as_ref()
+    }
+
+    /// The films to make a picture of: with what there is of a step that was stopped.
+    pub fn picture(&self) -> (Film, Option<AovFilm>) {
+        let mut films = (self.film.clone(), self.aovs.clone());
+        if let Some(torn) = &self.torn {
+            torn.add_to(&mut films.0, films.1.as_mut());
+        }
+        films
+    }
+
+    /// What was done so far.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// How it renders.
+    pub fn settings(&self) -> &RenderSettings {
+        &self.settings
+    }
+
+    /// What it does in each iteration.
+    pub fn plan(&self) -> &RenderPlan {
+        &self.plan
+    }
+
+    fn photon_step(
+        &mut self,
+        config: &PhotonMapperConfig,
+        pass: &CameraPass,
+        observer: &dyn Observer,
+    ) -> bool {
+        let (world, plan) = (self.world, self.plan);
+        if self.maps.is_none() {
+            let turn = Turn::new(&self.settings.method, &plan.camera, pass.seed, pass.iteration);
+            let Some(maps) = Maps::build(world, config, &plan.photons, &turn, observer) else { return false };
+            self.statistics.count(&maps, &mut self.ledger);
+            let given = self.guides.take();
+            let method = &self.settings.method;
+            self.guides = Some(Guides::of_turn(given, world, method, &maps, &plan.photons, &turn));
+            self.maps = Some(maps);
+        }
+        let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
+        let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
+        let mut exposed = expose(world, &mapper, pass, self.aovs.is_some(), observer);
+        if matches!(self.settings.method, Method::Ppm(_)) {
+            exposed.count_as_one_estimate();
+        }
+        self.take(exposed)
+    }
+
+    /// Adds a pass to the film if it is whole.
+    fn take(&mut self, exposed: Exposed) -> bool {
+        let (total, complete) = exposed.total();
+        self.statistics.picture.append(total);
+        if complete {
+            exposed.add_to(&mut self.film, self.aovs.as_mut());
+        } else {
+            self.torn = Some(exposed);
+        }
+        complete
+    }
+}
