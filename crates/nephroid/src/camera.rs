@@ -1,5 +1,7 @@
 //! Cameras: from a point of the picture to a ray.
 
+use std::f32::consts::FRAC_2_SQRT_PI;
+
 use crate::film::FilmSettings;
 use crate::handle::Handle;
 use crate::math::real::tan;
@@ -129,6 +131,19 @@ impl CameraRays {
         };
         let p = (Vec2::ONE - q / self.half) * 0.5;
         (local.z > 0.0).then(|| ((p - self.offset) * self.size, self.to_world.point(origin)))
+    }
+
+    /// The radius of a disc as large as a pixel is that lies across the view at a distance along a ray. Mirrors and
+    /// lenses on the way are taken for flat.
+    pub fn pixel_radius(&self, distance: f32) -> f32 {
+        let across = self.to_world.vector(Vec3::new(2.0 * self.half.x / self.size.x, 0.0, 0.0)).length();
+        let side = match self.projection {
+            Projection::Orthographic => across,
+            Projection::Perspective { .. } | Projection::ThinLens { .. } => {
+                distance * 2.0 * self.half.x / self.size.x
+            }
+        };
+        side * 0.5 * FRAC_2_SQRT_PI
     }
 
     /// Where the camera stands.

@@ -11,29 +11,30 @@ use super::estimate::Bandwidth;
 /// α = 2/3 of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blur {
-    iteration: u64,
+    iteration: Option<u64>,
 }
 
 impl Blur {
     /// That of estimates which are no part of a series.
-    pub const WHOLE: Self = Self { iteration: 0 };
+    pub const WHOLE: Self = Self { iteration: None };
 
     /// That of an iteration, from 0.
     pub fn of_iteration(iteration: u64) -> Self {
-        Self { iteration }
+        Self { iteration: Some(iteration) }
     }
 
     /// What a radius is multiplied by where so many dimensions are blurred.
     pub fn factor(self, dimensions: u32) -> f32 {
-        libm::pow(self.iteration as f64 + 1.0, -1.0 / (4.0 + f64::from(dimensions))) as f32
+        let Some(iteration) = self.iteration else { return 1.0 };
+        libm::pow(iteration as f64 + 1.0, -1.0 / (4.0 + f64::from(dimensions))) as f32
     }
 
-    /// A bandwidth of the first iteration, narrower. Estimates look for fewer photons, in the same proportion as their
+    /// A bandwidth of the first iteration, narrower; that of no series stays as it is. Estimates look for fewer photons, in the same proportion as their
     /// area or volume, and from some on take a part of the radius at which these lie.
     pub fn narrow(self, bandwidth: Bandwidth, dimensions: u32) -> Bandwidth {
         let factor = self.factor(dimensions);
         match bandwidth {
-            _ if factor == 1.0 => bandwidth,
+            _ if self == Self::WHOLE => bandwidth,
             Bandwidth::Fixed { radius } => Bandwidth::Fixed { radius: radius * factor },
             Bandwidth::Nearest { k, max_radius } => {
                 let wanted = k as f32 * factor.powi(dimensions as i32);
@@ -63,14 +64,15 @@ mod tests {
             let ratio = Blur::of_iteration(63).factor(dimensions) / Blur::of_iteration(0).factor(dimensions);
             assert!((f64::from(ratio).log2() + 6.0 * beta).abs() < 1e-6);
         }
-        assert_eq!(Blur::WHOLE.factor(2), 1.0);
+        assert_eq!([Blur::WHOLE, Blur::of_iteration(0)].map(|blur| blur.factor(2)), [1.0, 1.0]);
     }
 
     #[test]
     fn fewer_photons_are_looked_for_down_to_a_few() {
         let nearest = Bandwidth::Nearest { k: 64, max_radius: 2.0 };
         assert_eq!(Blur::WHOLE.narrow(nearest, 2), nearest);
-        for (iteration, dimensions) in [(1, 2), (7, 2), (7, 3), (300, 2), (100_000, 2), (100_000, 3)] {
+        for (iteration, dimensions) in [(0, 2), (1, 2), (7, 2), (7, 3), (300, 2), (100_000, 2), (100_000, 3)]
+        {
             let blur = Blur::of_iteration(iteration);
             let factor = blur.factor(dimensions);
             let Bandwidth::Part { k, max_radius, part, .. } = blur.narrow(nearest, dimensions) else {

@@ -65,6 +65,16 @@ pub enum Bandwidth {
     },
 }
 
+impl Bandwidth {
+    /// With a least radius, where it is a [part](Self::Part).
+    pub fn at_least(self, radius: f32) -> Self {
+        match self {
+            Self::Part { k, max_radius, part, .. } => Self::Part { k, max_radius, part, least: radius },
+            _ => self,
+        }
+    }
+}
+
 /// What a gather did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gathered {

@@ -188,7 +188,7 @@ impl<'w> Session<'w> {
             self.statistics.count(&maps, &mut self.ledger);
             let given = self.guides.take();
             let method = &self.settings.method;
-            self.guides = Some(Guides::of_turn(given, world, method, &maps, &plan.photons, &turn));
+            self.guides = Some(Guides::of_turn(given, world, method, &maps, &turn));
             self.maps = Some(maps);
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };

@@ -120,6 +120,23 @@ impl PhotonPlan {
     }
 }
 
+impl PhotonPlan {
+    /// A plan for so many times the photons of each map: the global, the caustic, the volume and its caustic one.
+    pub(crate) fn scaled(&self, world: &World, settings: &WalkSettings, factors: [f64; 4]) -> Self {
+        let scale = |map: &MapPlan, factor: f64| {
+            let paths = round_up((map.paths as f64 * factor).ceil() as u64, world, settings);
+            let expected = map.expected_photons as f64 * paths as f64 / map.paths.max(1) as f64;
+            MapPlan { paths, expected_photons: expected as u64, ..*map }
+        };
+        Self {
+            global: scale(&self.global, factors[0]),
+            caustic: scale(&self.caustic, factors[1]),
+            volume: scale(&self.volume, factors[2]),
+            volume_caustic: scale(&self.volume_caustic, factors[3]),
+        }
+    }
+}
+
 /// Gives every light the same number of paths where that was asked for.
 fn round_up(paths: u64, world: &World, settings: &WalkSettings) -> u64 {
     match settings.light_choice {

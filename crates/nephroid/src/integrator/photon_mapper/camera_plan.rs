@@ -7,12 +7,14 @@ pub struct CameraPlan {
     pub stride: u32,
     /// Gather rays of each sample that reads them; `None` reads them on the spot.
     pub gather_rays: Option<u32>,
+    /// Photons of an estimate from the global and from the caustic map.
+    pub neighbours: [u32; 2],
 }
 
 impl CameraPlan {
     /// Samples that have no photon maps to read.
     pub(crate) fn plain(samples_per_pixel: u32) -> Self {
-        Self { samples_per_pixel: samples_per_pixel.max(1), stride: 1, gather_rays: None }
+        Self { samples_per_pixel: samples_per_pixel.max(1), stride: 1, gather_rays: None, neighbours: [2; 2] }
     }
 }
 

@@ -215,7 +215,12 @@ impl PhotonMapperConfig {
     pub(crate) fn camera_plan(&self, samples_per_pixel: u32) -> CameraPlan {
         let samples_per_pixel = samples_per_pixel.max(1);
         let stride = reading_stride(samples_per_pixel);
-        CameraPlan { samples_per_pixel, stride, gather_rays: self.gather_rays(samples_per_pixel / stride) }
+        CameraPlan {
+            samples_per_pixel,
+            stride,
+            gather_rays: self.gather_rays(samples_per_pixel / stride),
+            neighbours: [self.neighbours; 2],
+        }
     }
 
     /// Gather rays of each camera sample that reads the maps; `None` reads them on the spot.
@@ -237,12 +242,12 @@ impl PhotonMapperConfig {
     }
 
     /// The width of estimates from a map.
-    pub(crate) fn bandwidth(&self, map: &PhotonMap) -> Bandwidth {
+    pub(crate) fn bandwidth(&self, map: &PhotonMap, neighbours: u32) -> Bandwidth {
         if let Some(radius) = self.radius {
             return Bandwidth::Fixed { radius };
         }
         let factor = if self.equal_bandwidth { self.kernel.equal_bandwidth_factor() } else { 1.0 };
-        let k = ((self.neighbours as f32 * factor).round() as u32).max(2);
+        let k = ((neighbours as f32 * factor).round() as u32).max(2);
         Bandwidth::Nearest { k, max_radius: self.max_radius.unwrap_or_else(|| map.default_max_radius(k)) }
     }
 }

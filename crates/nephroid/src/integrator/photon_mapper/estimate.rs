@@ -29,6 +29,9 @@ const SPLITS: u32 = 2;
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 6;
 
+/// A pixel's footprint on a surface grows with its slope as if the cosine were at least this: it is round.
+const MIN_COSINE: f32 = 0.25;
+
 /// What an estimate works with.
 struct Tools<'t, P> {
     /// Memory that look-ups lend one another.
@@ -45,13 +48,16 @@ struct Way {
     inside: Surroundings,
     /// Whether it begins where another medium ends.
     entered: bool,
+    /// The length of what lies before it.
+    before: f32,
 }
 
 impl Way {
     /// Onward from a surface that it met.
     fn pass(&self, world: &World, hit: &Hit, direction: Vec3) -> Self {
         let inside = world.cross(self.inside, hit, self.ray.direction, direction);
-        Self { ray: leave(&hit.point, direction), inside, entered: inside.medium() != self.inside.medium() }
+        let entered = inside.medium() != self.inside.medium();
+        Self { ray: leave(&hit.point, direction), inside, entered, before: self.before + hit.t }
     }
 }
 
@@ -104,6 +110,8 @@ struct Vertex<'a> {
     depth: u32,
     /// What lies on the side of `wo`.
     inside: Surroundings,
+    /// The radius of a pixel there; nothing where gather rays land.
+    footprint: f32,
 }
 
 impl<'a> Vertex<'a> {
@@ -125,7 +133,8 @@ impl<'a> PhotonMapper<'a> {
         guides: &'a Guides,
         plan: &CameraPlan,
     ) -> Self {
-        let bandwidth = |map| maps.blur.narrow(config.bandwidth(map), 2);
+        let bandwidth = |map, k| maps.blur.narrow(config.bandwidth(map, k), 2);
+        let [of_global, of_caustic] = plan.neighbours;
         let global_radius = config.radius.unwrap_or_else(|| maps.global.typical_radius(GATHER_PHOTONS));
         Self {
             world,
@@ -134,10 +143,10 @@ impl<'a> PhotonMapper<'a> {
             guides,
             stride: plan.stride,
             gather_rays: plan.gather_rays,
-            global_bandwidth: bandwidth(&maps.global),
-            caustic_bandwidth: bandwidth(&maps.caustic),
-            afterglow_bandwidth: bandwidth(&maps.afterglow),
-            haze_bandwidth: bandwidth(&maps.haze),
+            global_bandwidth: bandwidth(&maps.global, of_global),
+            caustic_bandwidth: bandwidth(&maps.caustic, of_caustic),
+            afterglow_bandwidth: bandwidth(&maps.afterglow, of_caustic),
+            haze_bandwidth: bandwidth(&maps.haze, of_global),
             global_radius: global_radius * maps.blur.factor(2),
         }
     }
@@ -190,7 +199,9 @@ impl<'a> PhotonMapper<'a> {
             }
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
             if !bsdf.is_dirac() {
-                let vertex = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside };
+                let across = self.world.camera().pixel_radius(way.before + hit.t);
+                let footprint = across / wo.dot(hit.point.ng).abs().max(MIN_COSINE).sqrt();
+                let vertex = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside, footprint };
                 self.shade(&vertex, throughput, branch, sample, tools, out);
                 return;
             }
@@ -329,6 +340,7 @@ impl<'a> PhotonMapper<'a> {
         };
         let has_direct = self.config.direct == DirectSource::Map && wanted.map == MapName::Global;
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
+        let bandwidth = bandwidth.at_least(vertex.footprint * self.maps.blur.factor(2));
         let Tools { neighbors, probe, .. } = tools;
         let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
             let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
@@ -350,7 +362,8 @@ impl Estimator for PhotonMapper<'_> {
         probe: &mut P,
     ) -> Components {
         let mut out = Components::default();
-        let way = Way { ray: sample.ray, inside: self.world.camera_surroundings(), entered: false };
+        let way =
+            Way { ray: sample.ray, inside: self.world.camera_surroundings(), entered: false, before: 0.0 };
         self.trace(
             way,
             Rgb::WHITE,

@@ -7,7 +7,6 @@ use super::{Maps, Turn};
 use crate::integrator::{Method, progressive};
 use crate::math::Vec3;
 use crate::photon_map::{Bandwidth, GridTree, Kernel, NearestList, PhotonIndex, PhotonMap, Query, gather};
-use crate::transport::PhotonPlan;
 use crate::world::World;
 
 /// One guide is made for so many photons of the map, at one of them …
@@ -40,18 +39,11 @@ impl Guides {
     }
 
     /// Those of an iteration: of its own photons, or in a series of iterations those that the first was given.
-    pub fn of_turn(
-        given: Option<Self>,
-        world: &World,
-        method: &Method,
-        maps: &Maps,
-        plan: &PhotonPlan,
-        turn: &Turn,
-    ) -> Self {
+    pub fn of_turn(given: Option<Self>, world: &World, method: &Method, maps: &Maps, turn: &Turn) -> Self {
         match (method, given) {
             _ if !turn.gathers => Self::none(),
             (Method::Ppm(_), Some(guides)) => guides,
-            (Method::Ppm(config), None) => progressive::guides(world, config, plan, turn.seed),
+            (Method::Ppm(config), None) => progressive::guides(world, config, turn.seed),
             _ => Self::new(&maps.global),
         }
     }

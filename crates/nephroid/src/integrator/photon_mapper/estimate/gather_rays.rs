@@ -104,8 +104,12 @@ impl PhotonMapper<'_> {
         let Some((direction, mut throughput)) = start_gather(vertex, guide, sampler) else {
             return found;
         };
-        let before =
-            Way { ray: Ray::new(vertex.point().position, -vertex.wo), inside: vertex.inside, entered: false };
+        let before = Way {
+            ray: Ray::new(vertex.point().position, -vertex.wo),
+            inside: vertex.inside,
+            entered: false,
+            before: 0.0,
+        };
         let mut way = before.pass(self.world, vertex.hit, direction);
         // The share that a glossy lobe has in the last surface's reflection: through it caustics are seen
         // as they are, and the rest of that surface has them by its afterglow.
@@ -141,7 +145,7 @@ impl PhotonMapper<'_> {
             }
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
             if !bsdf.is_dirac() {
-                let there = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside };
+                let there = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside, footprint: 0.0 };
                 let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
                 found += throughput * self.light_at(&there, far, sharp, throughput, sampler, tools);
                 if far {

@@ -1,0 +1,148 @@
+//! From what trials found to what each iteration does: work goes where it takes most of the error away.
+
+use super::trial::{PARTS, PixelTrial, SAMPLES, SETS};
+use crate::integrator::photon_mapper::CameraPlan;
+use crate::transport::PhotonPlan;
+
+/// What a stored photon costs in rays besides those of its path: it is encoded, sorted and indexed.
+const STORED_COST: f64 = 1.0;
+
+/// Estimates of later iterations blur less, and what photons make them vary by grows. This is for the sixteenth.
+const LATER: f64 = 2.5;
+
+/// Gather rays of a sample at most.
+const MOST_GATHER_RAYS: f64 = 16.0;
+
+/// Camera samples of a pixel in an iteration at most.
+const MOST_SAMPLES: u32 = 16;
+
+/// Photons in all maps together, at least and at most.
+const PHOTONS: [f64; 2] = [20_000.0, 4_000_000.0];
+
+/// The cost of photons is at least this part of that of camera samples. Variance does not tell that more photons also
+/// blur less.
+const LEAST_FOR_PHOTONS: f64 = 0.25;
+
+/// Paths of a map that trials found empty.
+const PATHS_IN_VAIN: u64 = 4096;
+
+/// The share of pixels whose variance is left out, where it is largest: one lucky sample must not decide.
+const LEFT_OUT: f64 = 0.01;
+
+/// Relative variances, means over the pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Variances {
+    /// Of one sample among those with the same maps, by part.
+    pub of_sample: [f64; PARTS],
+    /// Of the mean over all samples with the same maps among sets of maps, by part.
+    pub of_maps: [f64; PARTS],
+}
+
+impl Variances {
+    /// One-way analysis of variance for each pixel and part, relative to the pixel's light.
+    pub fn of(pixels: &[PixelTrial]) -> Self {
+        let light = |pixel: &PixelTrial| {
+            let all = pixel.iter().flatten().flatten().sum::<f64>();
+            all.max(0.0) / (SETS * SAMPLES) as f64
+        };
+        let mean = pixels.iter().map(light).sum::<f64>() / pixels.len().max(1) as f64;
+        let over = |by: &dyn Fn(&PixelTrial, usize) -> f64| {
+            [0, 1, 2, 3].map(|part| {
+                let relative = |p: &PixelTrial| by(p, part) / (light(p) + 0.1 * mean).powi(2);
+                trimmed_mean(pixels.iter().map(relative).collect())
+            })
+        };
+        if mean <= 0.0 {
+            return Self::default();
+        }
+        Self { of_sample: over(&|p, part| within(p, part)), of_maps: over(&|p, part| between(p, part)) }
+    }
+}
+
+/// The mean variance of samples with the same maps.
+fn within(pixel: &PixelTrial, part: usize) -> f64 {
+    pixel.iter().map(|set| variance(&set.map(|sample| sample[part]))).sum::<f64>() / SETS as f64
+}
+
+/// The variance that maps add to the mean of infinitely many samples; below zero by chance.
+fn between(pixel: &PixelTrial, part: usize) -> f64 {
+    let means = pixel.map(|set| set.iter().map(|sample| sample[part]).sum::<f64>() / SAMPLES as f64);
+    variance(&means) - within(pixel, part) / SAMPLES as f64
+}
+
+fn variance(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64
+}
+
+fn trimmed_mean(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let kept = values.len() - (values.len() as f64 * LEFT_OUT) as usize;
+    values[..kept].iter().sum::<f64>() / kept.max(1) as f64
+}
+
+/// What to do in each iteration of a picture of so many pixels, after a trial of `tried`.
+///
+/// An iteration has camera units, each with some plain samples of every pixel, of which one reads the maps and sends
+/// gather rays; and photons for each map. If a kind of work has the variance v for each piece of it and the cost c, then
+/// shares ∝ √(v/c) have the least error for their cost (Neyman 1934). Photons and samples are not tied to one another by
+/// anything else: estimates from twice the photons that blur as much vary half as much.
+pub(super) fn balance(
+    variances: &Variances,
+    costs: [f64; 3],
+    tried: &PhotonPlan,
+    gathers: bool,
+    pixels: u64,
+) -> ([f64; 4], CameraPlan) {
+    let [plain, reading, gathering] = costs;
+    let [v_plain, v_gathered, v_caustic, v_medium] = variances.of_sample.map(|v| v.max(1e-9));
+    let v_plain = v_plain + v_medium;
+    let share = |v: f64, cost: f64| (v / cost.max(1e-3)).sqrt();
+    let (samples, reads) = (share(v_plain, plain), share(v_caustic, reading));
+    let rays = if gathers { share(v_gathered, gathering) } else { 0.0 };
+    // Where rays or look-ups are wanted more than samples, each sample reads and sends some.
+    let stride = [4, 2].into_iter().find(|s| samples >= f64::from(*s) * reads.max(rays)).unwrap_or(1);
+    let per_unit = samples / f64::from(stride);
+    let gather_rays = (rays / per_unit.max(reads)).clamp(1.0, MOST_GATHER_RAYS).round();
+    let unit_cost =
+        (f64::from(stride) * plain + reading + if gathers { gather_rays * gathering } else { 0.0 })
+            * pixels as f64;
+    let unit_variance =
+        v_plain / f64::from(stride) + v_caustic + if gathers { v_gathered / gather_rays } else { v_gathered };
+    let [_, of_global, of_caustic, of_media] = variances.of_maps;
+    let maps = [
+        (tried.global, of_global),
+        (tried.caustic, of_caustic),
+        (tried.volume, of_media),
+        (tried.volume_caustic, of_media),
+    ];
+    let costs = maps.map(|(map, _)| {
+        let stored = map.expected_photons as f64;
+        if stored > 0.0 { 2.0 * map.paths as f64 + (1.0 + STORED_COST) * stored } else { 0.0 }
+    });
+    // Of each map as a multiple of what was tried, for one unit of the camera.
+    let mut factors = [0, 1, 2, 3].map(|i| {
+        let v = maps[i].1.max(0.01 * unit_variance) * LATER;
+        if costs[i] > 0.0 { (v * unit_cost / (unit_variance * costs[i])).sqrt() } else { 0.0 }
+    });
+    let photon_cost: f64 = costs.iter().zip(&factors).map(|(cost, factor)| cost * factor).sum();
+    if photon_cost > 0.0 {
+        let more = (LEAST_FOR_PHOTONS * unit_cost / photon_cost).max(1.0);
+        factors = factors.map(|factor| factor * more);
+    }
+    let total: f64 = maps.iter().zip(&factors).map(|((map, _), f)| map.expected_photons as f64 * f).sum();
+    let most_units = (MOST_SAMPLES / stride).max(1);
+    let units = if total > 0.0 { (PHOTONS[0] / total).ceil().clamp(1.0, f64::from(most_units)) } else { 1.0 };
+    let scale = if total > 0.0 { (units * total).clamp(PHOTONS[0], PHOTONS[1]) / total } else { 1.0 };
+    for (factor, (map, _)) in factors.iter_mut().zip(&maps) {
+        let in_vain = PATHS_IN_VAIN.min(map.paths) as f64 / map.paths.max(1) as f64;
+        *factor = if map.expected_photons == 0 { in_vain } else { *factor * scale };
+    }
+    let camera = CameraPlan {
+        samples_per_pixel: units as u32 * stride,
+        stride,
+        gather_rays: gathers.then_some(gather_rays as u32),
+        ..CameraPlan::default()
+    };
+    (factors, camera)
+}
