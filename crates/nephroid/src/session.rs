@@ -87,7 +87,7 @@ impl<'w> Session<'w> {
         Self {
             world,
             settings,
-            film: Film::new(window.width, window.height),
+            film: Film::with_unit(window.width, window.height, world.radiance_unit()),
             aovs: None,
             plan,
             maps: None,

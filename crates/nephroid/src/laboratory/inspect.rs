@@ -58,7 +58,7 @@ impl<'w> Inspector<'w> {
             pixel,
             plan,
             maps: None,
-            film: Film::new(1, 1),
+            film: Film::with_unit(1, 1, world.radiance_unit()),
             parts: AovFilm::new(1, 1, &[Aov::Direct, Aov::Global, Aov::Caustic, Aov::Emitted, Aov::Medium]),
             iteration: 0,
             samples: 0,
