@@ -88,16 +88,20 @@ impl<'c> IntoIterator for &'c Covered {
 mod tests {
     use super::*;
 
-    fn covered(ranges: &[Range<u64>]) -> Covered {
-        Covered::from_ranges(ranges.to_vec()).expect("ranges in order")
+    fn ranges(pairs: &[[u64; 2]]) -> Option<Covered> {
+        Covered::from_ranges(pairs.iter().map(|&[start, end]| start..end).collect())
+    }
+
+    fn covered(pairs: &[[u64; 2]]) -> Covered {
+        ranges(pairs).expect("ranges in order")
     }
 
     #[test]
     fn neighbours_become_one_range() {
-        let joined = covered(&[0..4, 12..16]).join(&covered(&[4..8, 20..24])).expect("no overlap");
-        assert_eq!(joined, covered(&[0..8, 12..16, 20..24]));
+        let joined = covered(&[[0, 4], [12, 16]]).join(&covered(&[[4, 8], [20, 24]])).expect("no overlap");
+        assert_eq!(joined, covered(&[[0, 8], [12, 16], [20, 24]]));
         assert_eq!((joined.total(), joined.end()), (16, 24));
-        let whole = joined.join(&covered(&[8..12, 16..20])).expect("no overlap");
+        let whole = joined.join(&covered(&[[8, 12], [16, 20]])).expect("no overlap");
         assert_eq!(whole, Covered::from_range(0..24));
         assert_eq!(whole.into_iter().count(), 1);
     }
@@ -109,12 +113,12 @@ mod tests {
             order.iter().try_fold(Covered::new(), |sum, &i| sum.join(&pieces[i])).expect("no overlap")
         };
         assert_eq!(join([0, 1, 2, 3, 4]), join([4, 2, 0, 3, 1]));
-        assert_eq!(join([3, 4, 1, 2, 0]), covered(&[0..10, 30..40]));
+        assert_eq!(join([3, 4, 1, 2, 0]), covered(&[[0, 10], [30, 40]]));
     }
 
     #[test]
     fn gaps_begin_at_the_first_sample() {
-        assert_eq!(covered(&[4..8, 12..16]).gaps(), [0..4, 8..12]);
+        assert_eq!(covered(&[[4, 8], [12, 16]]).gaps(), [0..4, 8..12]);
         assert!(Covered::from_range(0..7).gaps().is_empty());
         assert!(Covered::new().gaps().is_empty());
         assert_eq!(Covered::new().end(), 0);
@@ -122,21 +126,21 @@ mod tests {
 
     #[test]
     fn overlaps_are_found_wherever_they_are() {
-        let overlap = |a: &[Range<u64>], b: &[Range<u64>]| {
+        let overlap = |a: &[[u64; 2]], b: &[[u64; 2]]| {
             let found = covered(a).join(&covered(b)).expect_err("an overlap");
             assert_eq!(covered(b).join(&covered(a)), Err(found.clone()));
             found.0
         };
-        assert_eq!(overlap(&[0..8], &[7..9]), 7..8);
-        assert_eq!(overlap(&[0..80], &[10..12, 20..30]), 10..12);
-        assert_eq!(overlap(&[0..1, 5..9], &[5..9]), 5..9);
+        assert_eq!(overlap(&[[0, 8]], &[[7, 9]]), 7..8);
+        assert_eq!(overlap(&[[0, 80]], &[[10, 12], [20, 30]]), 10..12);
+        assert_eq!(overlap(&[[0, 1], [5, 9]], &[[5, 9]]), 5..9);
         assert_eq!(Overlap(16..32).to_string(), "samples 16 to 31 are in both");
     }
 
     #[test]
     fn only_ranges_in_order_are_taken() {
-        for bad in [vec![3..3], vec![0..4, 4..8], vec![8..9, 0..1], vec![Range { start: 5, end: 2 }]] {
-            assert_eq!(Covered::from_ranges(bad), None);
+        for bad in [&[[3, 3]][..], &[[0, 4], [4, 8]], &[[8, 9], [0, 1]], &[[5, 2]]] {
+            assert_eq!(ranges(bad), None);
         }
         assert_eq!(Covered::from_range(5..5), Covered::new());
     }

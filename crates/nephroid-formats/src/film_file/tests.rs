@@ -102,7 +102,7 @@ fn films_come_back_to_the_bit() {
 fn extreme_sums_come_back_and_take_sixty_bytes_a_pixel() {
     let signs = |negative: bool| if negative { -(1i128 << 95) } else { (1 << 95) - 1 };
     let total = |i: usize| PixelTotal {
-        radiance: [signs(i % 2 == 0), signs(i % 3 == 0), signs(i % 5 == 0)],
+        radiance: [2, 3, 5].map(|n| signs(i.is_multiple_of(n))),
         luminance_sq: [0, 1 << 95, (1 << 95) - 1, (1 << 96) - 1][i % 4],
         weight: [i64::MIN, i64::MAX, 0, -1][i % 4],
         samples: [0, u32::MAX, 1 << 31, 1][i % 4],
