@@ -1,6 +1,7 @@
 //! Files to and from the types of `nephroid`: scenes in, images out, errors that point.
 
 pub mod diagnostic;
+pub mod film_file;
 pub mod image;
 pub mod mesh;
 pub mod mitsuba;

@@ -94,7 +94,7 @@ pub enum ImageProblem {
 
 impl ImageProblem {
     /// For a file that starts as none of the formats that can be read.
-    pub(super) fn unknown_format(bytes: &[u8]) -> Self {
+    pub(crate) fn unknown_format(bytes: &[u8]) -> Self {
         const KNOWN: [(&[u8], &str); 9] = [
             (b"BM", "a BMP image"),
             (b"PF", "a PFM image"),

@@ -1,5 +1,5 @@
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -21,14 +21,21 @@ pub fn write_atomically(
     named(path, || {
         let target = Target::of(path)?;
         let bytes = contents()?;
-        let mut file = target.temporary_file()?;
-        if let Ok(metadata) = fs::metadata(&target.file) {
-            file.as_file().set_permissions(metadata.permissions()).map_err(ImageProblem::Write)?;
-        }
-        file.write_all(&bytes).map_err(ImageProblem::Write)?;
-        file.as_file().sync_all().map_err(ImageProblem::Write)?;
-        let put = file.persist(&target.file);
-        put.map(|_: File| ()).map_err(|e| ImageProblem::Write(e.error))
+        target.replace(|file| file.write_all(&bytes))
+    })
+}
+
+/// [`write_atomically`] for contents that are not in memory: `fill` writes them.
+pub fn stream_atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> Result<(), ImageError> {
+    named(path, || {
+        Target::of(path)?.replace(|file| {
+            let mut buffer = BufWriter::with_capacity(1 << 17, file.as_file());
+            fill(&mut buffer)?;
+            buffer.flush()
+        })
     })
 }
 
@@ -62,6 +69,17 @@ impl Target {
             return Err(ImageProblem::NoFolder { folder });
         }
         Ok(Self { file, folder })
+    }
+
+    fn replace(&self, fill: impl FnOnce(&mut NamedTempFile) -> io::Result<()>) -> Result<(), ImageProblem> {
+        let mut file = self.temporary_file()?;
+        if let Ok(metadata) = fs::metadata(&self.file) {
+            file.as_file().set_permissions(metadata.permissions()).map_err(ImageProblem::Write)?;
+        }
+        fill(&mut file).map_err(ImageProblem::Write)?;
+        file.as_file().sync_all().map_err(ImageProblem::Write)?;
+        let put = file.persist(&self.file);
+        put.map(|_: File| ()).map_err(|e| ImageProblem::Write(e.error))
     }
 
     fn temporary_file(&self) -> Result<NamedTempFile, ImageProblem> {

@@ -113,6 +113,11 @@ impl Aov {
         matches!(self, Self::Radius | Self::Count)
     }
 
+    /// Whether it is in W/(m²·sr).
+    pub(super) fn is_light(self) -> bool {
+        matches!(self, Self::Direct | Self::Global | Self::Caustic | Self::Emitted | Self::Medium)
+    }
+
     /// Where its numbers begin among those of all.
     pub(super) fn start(self) -> usize {
         Self::ALL.iter().take_while(|other| **other != self).map(|other| other.channels().len()).sum()

@@ -1,7 +1,8 @@
 //! The exact sums of further values of a picture.
 
 use super::aov::{Aov, AovSample, NUMBERS, Over};
-use super::fixed;
+use super::fixed::{LAYER, UNIT_LIMIT};
+use super::{MergeError, SizeMismatch};
 
 /// What one iteration found of further values for one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,16 +43,20 @@ impl AovSum {
 }
 
 /// Further values of a picture as exact sums: each of each iteration is rounded once to a fixed-point
-/// number, as a [`Film`](super::Film) does, and integers are added.
+/// number, as a [`Film`](super::Film) does, and integers are added. They count in steps of 2^−64, of light in
+/// steps of 2^−64 units.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AovFilm {
     width: u32,
     height: u32,
+    unit: i32,
     aovs: Vec<Aov>,
-    /// For each pixel the numbers of each value asked for.
-    numbers: Vec<i128>,
-    weights: Vec<[i128; 3]>,
+    /// For each pixel its weights, as in [`AovSum`], and the numbers of each value asked for.
+    sums: Vec<i128>,
 }
+
+/// Weights of a pixel, which come before its numbers.
+const WEIGHTS: usize = 3;
 
 /// One value of every pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,12 +74,33 @@ pub struct AovImage {
 impl AovFilm {
     /// An empty one for the values of a list; one that is named twice is kept once.
     pub fn new(width: u32, height: u32, aovs: &[Aov]) -> Self {
+        Self::with_unit(width, height, 0, aovs)
+    }
+
+    /// An empty one for light around 2^`unit` W/(m²·sr): see [`Film::with_unit`](super::Film::with_unit).
+    pub fn with_unit(width: u32, height: u32, unit: i32, aovs: &[Aov]) -> Self {
         let mut aovs = aovs.to_vec();
         aovs.sort_unstable();
         aovs.dedup();
-        let pixels = width as usize * height as usize;
-        let per_pixel: usize = aovs.iter().map(|aov| aov.channels().len()).sum();
-        Self { width, height, aovs, numbers: vec![0; pixels * per_pixel], weights: vec![[0; 3]; pixels] }
+        let unit = unit.clamp(-UNIT_LIMIT, UNIT_LIMIT);
+        let mut film = Self { width, height, unit, aovs, sums: Vec::new() };
+        film.sums = vec![0; width as usize * height as usize * film.sums_per_pixel()];
+        film
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Light is kept as multiples of a fraction of two to this power, in W/(m²·sr).
+    pub fn unit(&self) -> i32 {
+        self.unit
     }
 
     /// The values it keeps.
@@ -82,49 +108,89 @@ impl AovFilm {
         &self.aovs
     }
 
+    /// Integers that are kept for each pixel.
+    pub fn sums_per_pixel(&self) -> usize {
+        WEIGHTS + self.aovs.iter().map(|aov| aov.channels().len()).sum::<usize>()
+    }
+
+    /// The integers of all pixels, row by row: what a file keeps, and [`AovFilm::add_sums`] takes.
+    pub fn sums(&self) -> &[i128] {
+        &self.sums
+    }
+
+    /// Adds sums of another one of the same size, unit and values to the pixels from number `first` on.
+    ///
+    /// # Panics
+    /// If they reach beyond the last pixel.
+    pub fn add_sums(&mut self, first: usize, sums: &[i128]) {
+        let start = first * self.sums_per_pixel();
+        for (sum, v) in self.sums[start..start + sums.len()].iter_mut().zip(sums) {
+            *sum = LAYER.sum(*sum, *v);
+        }
+    }
+
     /// Adds one iteration, row by row. A pixel with a number that is NaN or infinite is left out whole.
     ///
     /// # Panics
     /// If there are not exactly `width · height` sums.
     pub fn add_iteration<'s>(&mut self, sums: impl ExactSizeIterator<Item = &'s AovSum>) {
-        assert_eq!(sums.len(), self.weights.len(), "an iteration covers the film");
-        let per_pixel = self.per_pixel();
-        for (i, sum) in sums.enumerate().filter(|(_, sum)| sum.is_usable()) {
-            for (total, w) in self.weights[i].iter_mut().zip(sum.weights) {
-                *total = total.saturating_add(fixed::signed(w).0);
-            }
-            let stored = &mut self.numbers[i * per_pixel..(i + 1) * per_pixel];
-            let given = self.aovs.iter().flat_map(|aov| &sum.numbers[aov.start()..][..aov.channels().len()]);
-            for (total, v) in stored.iter_mut().zip(given) {
-                *total = total.saturating_add(fixed::signed(*v).0);
+        let per_pixel = self.sums_per_pixel();
+        assert_eq!(sums.len() * per_pixel, self.sums.len(), "an iteration covers the film");
+        for (pixel, sum) in self.sums.chunks_exact_mut(per_pixel).zip(sums).filter(|(_, sum)| sum.is_usable())
+        {
+            let weights = sum.weights.iter().map(|w| LAYER.term(*w, 0));
+            let numbers = self.aovs.iter().flat_map(|aov| {
+                let numbers = &sum.numbers[aov.start()..][..aov.channels().len()];
+                numbers.iter().map(|v| LAYER.term(*v, unit_of(*aov, self.unit)))
+            });
+            for (total, (term, _)) in pixel.iter_mut().zip(weights.chain(numbers)) {
+                *total = LAYER.sum(*total, term);
             }
         }
+    }
+
+    /// Adds the iterations of another one, as if they had been added here.
+    ///
+    /// # Errors
+    /// If they differ in size, values or unit; this one is then as it was.
+    pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
+        SizeMismatch::check((self.width, self.height), (other.width, other.height))?;
+        if self.aovs != other.aovs {
+            return Err(MergeError::Values { first: self.aovs.clone(), second: other.aovs.clone() });
+        }
+        if self.unit != other.unit {
+            return Err(MergeError::Units { first: self.unit, second: other.unit });
+        }
+        self.add_sums(0, &other.sums);
+        Ok(())
     }
 
     /// A value of every pixel, zero where nothing was added; `None` if it is not kept.
     pub fn develop(&self, aov: Aov) -> Option<AovImage> {
         let before = self.aovs.iter().position(|kept| *kept == aov)?;
-        let start: usize = self.aovs[..before].iter().map(|aov| aov.channels().len()).sum();
+        let start = WEIGHTS + self.aovs[..before].iter().map(|aov| aov.channels().len()).sum::<usize>();
         let weight_of = match aov.over() {
             Over::Samples => 0,
             Over::Hits => 1,
             Over::LookUps => 2,
         };
-        let per_pixel = self.per_pixel();
-        let mean = |(pixel, channel): (usize, usize)| {
-            let weight = fixed::signed_value(self.weights[pixel][weight_of]);
-            let sum = fixed::signed_value(self.numbers[pixel * per_pixel + start + channel]);
+        let unit = unit_of(aov, self.unit);
+        let mean = |pixel: &[i128], channel: usize| {
+            let weight = LAYER.value(pixel[weight_of], 0);
+            let sum = LAYER.value(pixel[start + channel], unit);
             let mean = if weight == 0.0 { 0.0 } else { (sum / weight) as f32 };
             if aov == Aov::Albedo { mean.clamp(0.0, 1.0) } else { mean }
         };
-        let channel = |c: usize| (0..self.weights.len()).map(|pixel| mean((pixel, c))).collect();
+        let pixels = || self.sums.chunks_exact(self.sums_per_pixel());
+        let channel = |c: usize| pixels().map(|pixel| mean(pixel, c)).collect();
         let channels = (0..aov.channels().len()).map(channel).collect();
         Some(AovImage { aov, width: self.width, height: self.height, channels })
     }
+}
 
-    fn per_pixel(&self) -> usize {
-        self.aovs.iter().map(|aov| aov.channels().len()).sum()
-    }
+/// The unit that a value is kept in where light has this one.
+fn unit_of(aov: Aov, unit_of_light: i32) -> i32 {
+    if aov.is_light() { unit_of_light } else { 0 }
 }
 
 #[cfg(test)]
@@ -181,5 +247,36 @@ mod tests {
         let mut more = film.clone();
         more.add_iteration([sum(&[(sample(f32::NAN, 1.0), 1.0)])].iter());
         assert_eq!(film, more);
+    }
+
+    #[test]
+    fn merged_values_are_those_of_all_iterations() {
+        let sums: Vec<_> = (0..4).map(|i| sum(&[(sample(0.3 * i as f32, 1e-7 * i as f32), 0.7)])).collect();
+        let film_of = |numbers: &[usize]| {
+            let mut film = AovFilm::with_unit(1, 1, -9, &Aov::ALL);
+            numbers.iter().for_each(|&i| film.add_iteration([sums[i]].iter()));
+            film
+        };
+        let mut film = film_of(&[3, 1]);
+        assert_eq!(film.merge(&film_of(&[0, 2])), Ok(()));
+        assert_eq!(film, film_of(&[0, 1, 2, 3]));
+        let mut copy = AovFilm::with_unit(1, 1, -9, &Aov::ALL);
+        copy.add_sums(0, film.sums());
+        assert_eq!(film, copy);
+        let error = |other: &AovFilm| film.clone().merge(other).unwrap_err().to_string();
+        assert_eq!(error(&AovFilm::new(1, 2, &Aov::ALL)), "one picture is 1×1 pixels, the other 1×2");
+        assert_eq!(error(&AovFilm::new(1, 1, &Aov::ALL)), "radiances count in units of 2^-9 and of 2^0");
+        let few = AovFilm::new(1, 1, &Aov::ALL[2..]);
+        assert_eq!(error(&few), "only one of the two has the values direct, global");
+    }
+
+    #[test]
+    fn light_of_any_scale_is_kept() {
+        for (unit, light) in [(-40, 1e-12f32), (40, 1e12), (120, 1e36), (-120, 1e-36)] {
+            let mut film = AovFilm::with_unit(1, 1, unit, &[Aov::Direct, Aov::Depth]);
+            film.add_iteration([sum(&[(sample(3.0, light), 1.0)])].iter());
+            let value = |aov| film.develop(aov).unwrap().channels.concat();
+            assert_eq!((value(Aov::Direct), value(Aov::Depth)), (vec![light, 2.0 * light, 0.0], vec![3.0]));
+        }
     }
 }

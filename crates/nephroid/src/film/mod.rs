@@ -6,7 +6,11 @@ mod error;
 mod filter;
 mod filter_sampler;
 mod fixed;
+mod merge_error;
+mod pixel;
 mod sums;
+#[cfg(test)]
+mod sums_tests;
 mod tonemap;
 mod tonemap_name;
 
@@ -15,7 +19,9 @@ pub use aov_film::{AovFilm, AovImage, AovSum};
 pub use error::{ImageError, SizeMismatch, difference_picture};
 pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};
-pub use sums::{Film, FilmCounts, PixelSum, PixelTotal};
+pub use merge_error::MergeError;
+pub use pixel::{PixelSum, PixelTotal};
+pub use sums::{Film, FilmCounts};
 pub use tonemap::{Equalization, ToneMap, White};
 pub use tonemap_name::ToneMapError;
 

@@ -10,7 +10,7 @@ pub use place::Place;
 pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
 
-use crate::film::{Aov, AovFilm, Film, SizeMismatch};
+use crate::film::{Aov, AovFilm, Film, MergeError};
 use crate::integrator::{Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn};
 use crate::observer::Observer;
 use crate::transport::{CameraPass, Ledger};
@@ -66,7 +66,7 @@ impl<'w> Session<'w> {
             world,
             settings,
             plan,
-            film: Film::new(window.width, window.height),
+            film: Film::with_unit(window.width, window.height, world.radiance_unit()),
             aovs: None,
             torn: None,
             maps: None,
@@ -80,8 +80,8 @@ impl<'w> Session<'w> {
     /// Keeps further values of each pixel; none for an empty list. The picture stays the same to the bit.
     #[must_use]
     pub fn with_aovs(mut self, aovs: &[Aov]) -> Self {
-        let (width, height) = (self.film.width(), self.film.height());
-        self.aovs = (!aovs.is_empty()).then(|| AovFilm::new(width, height, aovs));
+        let (width, height, unit) = (self.film.width(), self.film.height(), self.film.unit());
+        self.aovs = (!aovs.is_empty()).then(|| AovFilm::with_unit(width, height, unit, aovs));
         self
     }
 
@@ -93,8 +93,9 @@ impl<'w> Session<'w> {
     }
 
     /// Goes on with the films of what was rendered before.
-    pub fn with_films(mut self, film: Film, aovs: Option<AovFilm>) -> Result<Self, SizeMismatch> {
-        SizeMismatch::check((self.film.width(), self.film.height()), (film.width(), film.height()))?;
+    pub fn with_films(mut self, film: Film, aovs: Option<AovFilm>) -> Result<Self, MergeError> {
+        // Nothing is in this session's own.
+        self.film.merge(&film)?;
         (self.film, self.aovs) = (film, aovs);
         Ok(self)
     }

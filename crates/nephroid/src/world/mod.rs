@@ -16,6 +16,7 @@ mod surroundings;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod unit;
 mod whereabouts;
 
 pub use surroundings::Surroundings;

@@ -1,0 +1,126 @@
+//! The sums of one pixel.
+
+use super::fixed::{self, RADIANCE, WEIGHT};
+use crate::color::Rgb;
+
+/// What one iteration found for one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelSum {
+    /// Σ w·L per channel, in W/(m²·sr).
+    pub radiance: [f64; 3],
+    /// Σ (w·Y)² over the independent estimates, where Y is the luminance.
+    pub luminance_sq: f64,
+    /// Σ w, the weights of the reconstruction filter.
+    pub weight: f64,
+    /// Independent estimates that the variance may count on. Samples that share a photon map make
+    /// one estimate together: see [`PixelSum::as_one_estimate`].
+    pub samples: u32,
+}
+
+impl PixelSum {
+    /// Adds an independent sample of weight `weight`.
+    #[inline]
+    pub fn add(&mut self, radiance: Rgb, weight: f32) {
+        let weight = f64::from(weight);
+        let weighted = radiance.to_array().map(|v| weight * f64::from(v));
+        for (sum, v) in self.radiance.iter_mut().zip(weighted) {
+            *sum += v;
+        }
+        let y = luminance(weighted);
+        self.luminance_sq += y * y;
+        self.weight += weight;
+        self.samples += 1;
+    }
+
+    /// The same light, counted as a single estimate: for samples of one iteration that are
+    /// correlated because they gather from the same photons.
+    pub fn as_one_estimate(self) -> Self {
+        let y = luminance(self.radiance);
+        Self { luminance_sq: y * y, samples: self.samples.min(1), ..self }
+    }
+
+    /// Whether it can be added to a film.
+    pub(super) fn is_usable(&self) -> bool {
+        self.radiance.iter().all(|v| v.is_finite())
+            && self.weight.is_finite()
+            && self.luminance_sq.is_finite()
+            && self.luminance_sq >= 0.0
+    }
+}
+
+/// The exact sums of one pixel over all iterations, in fixed point: see [`Film`](super::Film).
+///
+/// The bits of each are as many as a file keeps, and sums end there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PixelTotal {
+    /// Σ w·L per channel in 96 bits, in steps of 2^−48 units.
+    pub radiance: [i128; 3],
+    /// Σ (w·Y)² in 96 bits, in steps of 2^−36 units squared. At its largest value it is saturated.
+    pub luminance_sq: u128,
+    /// Σ w, in steps of 2^−32.
+    pub weight: i64,
+    /// Independent estimates.
+    pub samples: u32,
+}
+
+impl PixelTotal {
+    /// Rounds one iteration's sums, each once, and counts how many had to be cut.
+    pub(super) fn from_sum(sum: &PixelSum, unit: i32) -> (Self, u64) {
+        let [r, g, b] = sum.radiance.map(|v| RADIANCE.term(v, unit));
+        let square = fixed::square(sum.luminance_sq, unit);
+        let weight = WEIGHT.term(sum.weight, 0);
+        let cut = [r.1, g.1, b.1, weight.1, square.1].into_iter().filter(|&cut| cut).count();
+        let total = Self {
+            radiance: [r.0, g.0, b.0],
+            luminance_sq: square.0,
+            // It is within 48 bits.
+            weight: weight.0 as i64,
+            samples: sum.samples,
+        };
+        (total, cut as u64)
+    }
+
+    pub(super) fn add(&mut self, other: &Self) {
+        for (sum, v) in self.radiance.iter_mut().zip(other.radiance) {
+            *sum = RADIANCE.sum(*sum, v);
+        }
+        self.luminance_sq = fixed::sum_of_squares(self.luminance_sq, other.luminance_sq);
+        self.weight = self.weight.saturating_add(other.weight);
+        self.samples = self.samples.saturating_add(other.samples);
+    }
+
+    /// Whether each sum has no more bits than it may.
+    pub(super) fn is_in_bounds(&self) -> bool {
+        self.radiance.iter().all(|v| RADIANCE.holds(*v)) && self.luminance_sq <= fixed::SATURATED_SQUARE
+    }
+
+    /// Σ wL / Σ w; black where the weights sum to zero.
+    pub(super) fn mean(&self, unit: i32) -> [f64; 3] {
+        if self.weight == 0 {
+            return [0.0; 3];
+        }
+        let weight = self.weight();
+        self.radiance.map(|v| RADIANCE.value(v, unit) / weight)
+    }
+
+    /// Variance of the mean's luminance: n/(n−1) · (Σ X² − (Σ X)²/n) / (Σ w)², X = w·Y.
+    pub(super) fn variance(&self, unit: i32) -> f64 {
+        if self.samples < 2 || self.weight == 0 {
+            return f64::INFINITY;
+        }
+        let n = f64::from(self.samples);
+        let sum = luminance(self.radiance.map(|v| RADIANCE.value(v, unit)));
+        let spread = (fixed::square_value(self.luminance_sq, unit) - sum * sum / n).max(0.0);
+        let weight = self.weight();
+        n / (n - 1.0) * spread / (weight * weight)
+    }
+
+    fn weight(&self) -> f64 {
+        WEIGHT.value(i128::from(self.weight), 0)
+    }
+}
+
+/// Relative luminance in double precision, as [`Rgb::luminance`].
+pub(super) fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.212_6 * r + 0.715_2 * g + 0.072_2 * b
+}
