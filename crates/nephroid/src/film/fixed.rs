@@ -135,7 +135,7 @@ mod tests {
             for value in [1.0, 1e14, 1e-12, 1.1e-14, 0.0].map(|v| v * of_unit * of_unit) {
                 let (fixed, cut) = square(value, unit);
                 let error = (square_value(fixed, unit) - value).abs();
-                assert!(!cut && error <= 0.5 * power_of_two(2 * unit - 48), "{value}");
+                assert!(!cut && error <= 0.5 * power_of_two(2 * unit - SQUARE_FRACTION_BITS), "{value}");
             }
         }
         let (fixed, cut) = LAYER.term(-2.6e-19, 0);
