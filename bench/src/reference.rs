@@ -16,9 +16,7 @@ pub struct Reference {
 impl Reference {
     /// Reads `A.exr`, or `A.exr,B.exr`: two pictures that are independent of one another, of which the mean is taken.
     pub fn read(files: &str) -> Result<Self, String> {
-        let read = |path: &str| {
-            read_image(Path::new(path)).map(|file| file.image).map_err(|e| format!("{path}: {e}"))
-        };
+        let read = |path: &str| read_image(Path::new(path)).map(|file| file.image).map_err(|e| e.to_string());
         match files.split_once(',') {
             Some((a, b)) => Self::halves(&read(a)?, &read(b)?),
             None => Ok(Self { picture: read(files)?, noise: None }),

@@ -13,7 +13,6 @@
 //! Time runs while photons are traced and pixels sampled. Reading files, preparing the world and comparing pictures is
 //! not counted. A picture is looked at after the first step that ends at a mark or behind it; where it passes several, once.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -63,35 +62,39 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), String> {
     let mut csv = "scene,method,cpu_s,iterations,samples,rel_mse,noise,mean_ratio\n".to_string();
     for (scene, reference) in &arguments.pairs {
-        let reference = Reference::read(reference)?;
-        let file = read_scene(scene, &DiskFiles, &Options::default()).map_err(|e| e.to_string())?;
-        let max_depth = max_depth(&file)?;
-        let world = World::new(file.scene).map_err(|e| format!("{}: {e}", scene.display()))?;
-        let scene = scene.file_stem().unwrap_or_default().to_string_lossy();
-        println!("\n### {scene}\n");
-        match reference.noise() {
-            Some(noise) => println!("The reference's own noise, {noise:.1e}, is taken off.\n"),
-            None => println!("The reference's own noise is not known and not taken off.\n"),
-        }
-        println!("| method | CPU s | iterations | samples | relMSE | mean |\n|---|---:|---:|---:|---:|---:|");
-        for name in &arguments.methods {
-            let method = method(name, max_depth).ok_or("no such integrator")?;
-            for row in converge(&world, method, &reference, arguments)? {
-                let Row { cpu, iterations, samples, rel_mse, mean_ratio } = row;
-                let noise = reference.noise().map(|noise| format!("{noise:.6}")).unwrap_or_default();
-                println!("| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |");
-                writeln!(
-                    csv,
-                    "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}"
-                )
-                .map_err(|e| e.to_string())?;
-            }
-        }
+        csv += &report(scene, &Reference::read(reference)?, arguments)?;
         if let Some(path) = &arguments.csv {
             std::fs::write(path, &csv).map_err(|e| format!("{}: {e}", path.display()))?;
         }
     }
     Ok(())
+}
+
+/// Prints a scene's table; returns the same for the CSV file.
+fn report(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<String, String> {
+    let file = read_scene(path, &DiskFiles, &Options::default()).map_err(|e| e.to_string())?;
+    let max_depth = max_depth(&file)?;
+    let world = World::new(file.scene).map_err(|e| format!("{}: {e}", path.display()))?;
+    let scene = path.file_stem().unwrap_or_default().to_string_lossy();
+    println!("\n### {scene}\n");
+    match reference.noise() {
+        Some(noise) => println!("The reference's own noise, {noise:.1e}, is taken off.\n"),
+        None => println!("The reference's own noise is not known and not taken off.\n"),
+    }
+    println!("| method | CPU s | iterations | samples | relMSE | mean |\n|---|---:|---:|---:|---:|---:|");
+    let noise = reference.noise().map(|noise| format!("{noise:.6}")).unwrap_or_default();
+    let mut csv = String::new();
+    for name in &arguments.methods {
+        let method = method(name, max_depth).ok_or("no such integrator")?;
+        for row in converge(&world, method, reference, arguments)? {
+            let Row { cpu, iterations, samples, rel_mse, mean_ratio } = row;
+            println!("| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |");
+            csv += &format!(
+                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}\n"
+            );
+        }
+    }
+    Ok(csv)
 }
 
 /// A picture at a mark.
