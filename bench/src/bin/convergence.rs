@@ -86,13 +86,13 @@ fn report(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<S
     let mut csv = String::new();
     for name in &arguments.methods {
         let method = method(name, max_depth).ok_or("no such integrator")?;
-        for row in converge(&world, method, reference, arguments)? {
+        converge(&world, method, reference, arguments, |row| {
             let Row { cpu, iterations, samples, rel_mse, mean_ratio } = row;
             println!("| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |");
             csv += &format!(
                 "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}\n"
             );
-        }
+        })?;
     }
     Ok(csv)
 }
@@ -106,31 +106,32 @@ struct Row {
     mean_ratio: f64,
 }
 
-/// Renders until the last mark, and looks at the picture at each that a step brought nearer.
+/// Renders until the last mark, and shows the picture at each, unless that was seen already.
 fn converge(
     world: &World,
     method: Method,
     reference: &Reference,
     arguments: &Arguments,
-) -> Result<Vec<Row>, String> {
+    mut seen: impl FnMut(Row),
+) -> Result<(), String> {
     let Arguments { samples_per_pixel, marks, seed, .. } = arguments;
     let settings = RenderSettings { method, samples_per_pixel: *samples_per_pixel, seed: *seed };
     let (mut session, mut cpu) = (None, Duration::ZERO);
     cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
     let mut session = session.ok_or("no session")?;
-    let mut rows = Vec::with_capacity(marks.len());
+    let mut shown = None;
     for &mark in marks {
-        if cpu.as_secs_f64() >= mark && !rows.is_empty() {
-            continue;
-        }
         while cpu.as_secs_f64() < mark {
             cpu += cpu_time(|| {
                 session.step(&Silent);
             });
         }
+        if shown.replace(cpu) == Some(cpu) {
+            continue;
+        }
         let (rel_mse, mean_ratio) = reference.compare(&session.film().develop())?;
         let statistics = session.statistics();
-        rows.push(Row {
+        seen(Row {
             cpu: cpu.as_secs_f64(),
             iterations: statistics.iterations,
             samples: statistics.samples_per_pixel,
@@ -138,7 +139,7 @@ fn converge(
             mean_ratio,
         });
     }
-    Ok(rows)
+    Ok(())
 }
 
 /// What the scene says of the longest path; less than nothing is no end.
