@@ -2,7 +2,8 @@
 
 use crate::film::{Aov, AovFilm, AovSum, Film, PixelSum};
 use crate::integrator::{
-    AovProbe, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PictureSums,
+    AovProbe, Brought, Estimator, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
+    PictureSums,
 };
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::NearestList;
@@ -82,7 +83,7 @@ impl<'w> Session<'w> {
                 let _work = Work::begin(observer, Phase::Pilot, 1);
                 PhotonPlan::by_pilot(world, &config.walk_settings(), &config.targets(), settings.seed)
             }
-            Method::Path(_) => PhotonPlan::default(),
+            Method::Path(_) | Method::LightTracer(_) => PhotonPlan::default(),
         };
         Self {
             world,
@@ -126,6 +127,13 @@ impl<'w> Session<'w> {
                 let tracer = PathTracer { world: self.world, config: &config };
                 let exposure = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
                 self.take(exposure)
+            }
+            Method::LightTracer(config) => {
+                let tracer = LightTracer { world: self.world, config: &config };
+                let Some(light) = tracer.paths(&pass, observer) else { return false };
+                let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                exposed.add(&light);
+                self.take(exposed)
             }
         };
         if done {
@@ -229,6 +237,18 @@ impl<'w> Session<'w> {
 enum Exposed {
     Picture(Exposure<PixelSum, PictureSums>),
     WithAovs(Exposure<(PixelSum, AovSum), PictureSums>),
+}
+
+impl Exposed {
+    /// Adds what light paths brought.
+    fn add(&mut self, light: &Brought) {
+        match self {
+            Self::Picture(exposure) => light.add_to(exposure.sums.iter_mut(), &mut exposure.total),
+            Self::WithAovs(exposure) => {
+                light.add_to(exposure.sums.iter_mut().map(|(sum, _)| sum), &mut exposure.total);
+            }
+        }
+    }
 }
 
 fn expose(

@@ -1,9 +1,12 @@
 //! Integrators: each a configuration and one iteration.
 
+mod light_tracer;
 mod path;
 mod photon_mapper;
 mod probe;
 
+pub use light_tracer::LightTracerConfig;
+pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
 pub use photon_mapper::{DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
@@ -21,6 +24,8 @@ pub enum Method {
     PhotonMapper(PhotonMapperConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
+    /// Unbiased light tracing to the camera, the reference for caustics.
+    LightTracer(LightTracerConfig),
 }
 
 impl Method {
@@ -30,6 +35,7 @@ impl Method {
             Self::PhotonMapper(_) => "photonmapper",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
+            Self::LightTracer(_) => "ptracer",
         }
     }
 }

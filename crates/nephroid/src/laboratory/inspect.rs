@@ -5,7 +5,9 @@ use super::inspect_probe::{InspectProbe, InspectedSample};
 use super::photons;
 use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
-use crate::integrator::{Components, Estimator, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig};
+use crate::integrator::{
+    Components, Estimator, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
+};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::session::{RenderSettings, STEP_SAMPLES};
@@ -50,7 +52,7 @@ impl<'w> Inspector<'w> {
     ) -> Self {
         let plan = match &settings.method {
             Method::PhotonMapper(config) => photons::plan(world, config, settings.seed, observer),
-            Method::Path(_) => PhotonPlan::default(),
+            Method::Path(_) | Method::LightTracer(_) => PhotonPlan::default(),
         };
         Self {
             world,
@@ -86,6 +88,9 @@ impl<'w> Inspector<'w> {
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
+            }
+            Method::LightTracer(config) => {
+                self.take(&LightTracer { world: self.world, config: &config }, None, taken);
             }
         }
         self.samples += taken;
