@@ -152,9 +152,8 @@ fn fog_scatters_a_point_light_once() {
 fn mirrors_show_lamps_and_nothing_else() {
     let scene = |glow: f32| {
         let mut b = Builder::seen_from(Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, -0.5), 20.0, 8);
-        let (mirror, wall, emission) = (b.mirror(0.8), b.diffuse(0.5), b.constant(glow));
+        let (mirror, wall, emission) = (b.mirror(1.0), b.diffuse(0.5), b.constant(glow));
         b.shape(Geometry::Rectangle, facing(DVec3::ZERO, 3.0, DVec3::X, -90.0), mirror);
-        // Fills the mirror.
         let room = b.sphere(Vec3::ZERO, 4.0, wall);
         room.flip_normals = true;
         if glow > 0.0 {
@@ -171,7 +170,7 @@ fn mirrors_show_lamps_and_nothing_else() {
     };
     assert!(mean(0.0, &path()) > 1e-3);
     assert_eq!(mean(0.0, &light_tracer(None)), 0.0);
-    assert!((mean(0.5, &light_tracer(None)) - 0.4).abs() < 1e-6);
+    assert!((mean(0.5, &light_tracer(None)) - 0.5).abs() < 1e-6);
     assert!(!LightTracerConfig::misses(&floor().build()));
 }
 
