@@ -129,7 +129,7 @@ impl<'w> Session<'w> {
                 self.take(exposure)
             }
             Method::LightTracer(config) => {
-                let tracer = LightTracer { world: self.world, config: &config };
+                let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
                 let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
                 exposed.add(&light);

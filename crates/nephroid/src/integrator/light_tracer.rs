@@ -7,6 +7,7 @@
 use super::{Components, Estimator, LightPart, Met, PictureSums, Probe};
 use crate::color::Rgb;
 use crate::film::PixelSum;
+use crate::light::{Emitter, EmitterKind};
 use crate::material::{Transport, segments_by};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -34,11 +35,25 @@ impl LightTracerConfig {
 
 /// The light tracer of a world.
 pub(crate) struct LightTracer<'a> {
-    pub world: &'a World,
-    pub config: &'a LightTracerConfig,
+    world: &'a World,
+    config: &'a LightTracerConfig,
+    /// Whether anything gives off light that a camera ray may meet.
+    shines: bool,
 }
 
-impl LightTracer<'_> {
+impl<'a> LightTracer<'a> {
+    pub fn new(world: &'a World, config: &'a LightTracerConfig) -> Self {
+        let is_seen = |emitter: &Emitter| match emitter.kind {
+            EmitterKind::Point { .. } | EmitterKind::Spot(_) | EmitterKind::Directional { .. } => false,
+            EmitterKind::Area(_)
+            | EmitterKind::Constant(_)
+            | EmitterKind::Environment(_)
+            | EmitterKind::Medium(_) => true,
+        };
+        let shines = world.has_media() || world.emitters().iter().any(is_seen);
+        Self { world, config, shines }
+    }
+
     /// What light paths bring in one step: as many as it has camera samples. `None` if the observer cancelled.
     pub fn paths(&self, pass: &CameraPass, observer: &dyn Observer) -> Option<Brought> {
         let window = self.world.scene().film.window();
@@ -97,6 +112,9 @@ impl Estimator for LightTracer<'_> {
         let world = self.world;
         probe.begin(None, Rgb::WHITE);
         let mut out = Components::default();
+        if P::IDLE && !self.shines {
+            return out;
+        }
         let mut book = |part, light, probe: &mut P| {
             out.add(part, light);
             probe.light(part, light);

@@ -90,7 +90,7 @@ impl<'w> Inspector<'w> {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
             }
             Method::LightTracer(config) => {
-                self.take(&LightTracer { world: self.world, config: &config }, None, taken);
+                self.take(&LightTracer::new(self.world, &config), None, taken);
             }
         }
         self.samples += taken;
