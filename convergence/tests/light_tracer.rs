@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use nephroid::camera::{FovAxis, Projection};
 use nephroid::color::Rgb;
-use nephroid::film::{Crop, Filter};
+use nephroid::film::{Crop, Film, Filter};
 use nephroid::integrator::{LightTracerConfig, Method};
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Phase;
@@ -203,7 +203,7 @@ fn the_variance_is_that_of_steps() {
     let films: Vec<_> =
         (0..64).map(|seed| session(&world, light_tracer(None), 64, seed).film().clone()).collect();
     let pixels = (SIDE * SIDE) as usize;
-    let told: f64 = films.iter().flat_map(|film| film.variance()).sum::<f64>() / 64.0;
+    let told: f64 = films.iter().flat_map(Film::variance).sum::<f64>() / 64.0;
     let found: f64 = (0..pixels)
         .map(|i| {
             let values: MeanTest =
