@@ -31,7 +31,7 @@ fn level() -> f64 {
 }
 
 const ALBEDO: f64 = 0.5;
-const HEIGHT: f64 = 3.0;
+const HEIGHT: f64 = 1.5;
 /// Half the width of the floor that is seen.
 const HALF: f64 = 1.0;
 
@@ -40,13 +40,13 @@ fn floor() -> Builder {
     let fov = 2.0 * libm::atan(HALF / HEIGHT).to_degrees();
     let mut b = Builder::seen_from(Vec3::Y * HEIGHT as f32, Vec3::ZERO, fov as f32, SIDE);
     let grey = b.diffuse(ALBEDO as f32);
-    b.shape(Geometry::Rectangle, facing(DVec3::ZERO, 4.0, DVec3::X, -90.0), grey);
+    b.shape(Geometry::Rectangle, facing(DVec3::ZERO, 1.3, DVec3::X, -90.0), grey);
     b
 }
 
 /// Tests the means of blocks against those of `irradiance` at points of the floor, 64 for each block.
 fn judge_floor(world: &World, irradiance: impl Fn(DVec3) -> f64) {
-    let pictures = renders(world, &light_tracer(None), 64, 1..17);
+    let pictures = renders(world, &light_tracer(None), 256, 1..17);
     let to_world = world.scene().camera.to_world;
     let blocks = block_samples(&pictures, SIDE as usize, BLOCK);
     for (i, block) in blocks.iter().enumerate() {
@@ -116,7 +116,7 @@ fn a_furnace_is_even_for_all_cameras_and_filters() {
         let (wall, glow) = (b.diffuse(0.5), b.constant(0.5));
         let room = b.sphere(Vec3::ZERO, 1.5, wall);
         (room.flip_normals, room.emission) = (true, Some(glow));
-        let pictures = renders(&b.build(), &light_tracer(None), 64, 1..17);
+        let pictures = renders(&b.build(), &light_tracer(None), 256, 1..17);
         for block in block_samples(&pictures, SIDE as usize, BLOCK) {
             block.iter().copied().collect::<MeanTest>().against(1.0).assert_passes(level());
         }

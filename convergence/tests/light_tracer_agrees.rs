@@ -122,6 +122,17 @@ fn smooth_ball(center: Vec3, radius: f32) -> Mesh {
     mesh
 }
 
+/// A floor whose normals all lean to the back: what the factors do is not levelled out.
+fn leaning_floor() -> Mesh {
+    let corners = [[-1.5, -1.0, 1.5], [1.5, -1.0, 1.5], [1.5, -1.0, -1.5], [-1.5, -1.0, -1.5]];
+    Mesh {
+        positions: corners.map(Vec3::from_array).to_vec(),
+        normals: vec![Vec3::new(0.2, 1.0, -0.35).normalize(); 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
 /// Light goes to the floor from the balls and back, so that power is corrected on the way and at its end.
 #[test]
 fn with_interpolated_normals() {
@@ -129,7 +140,7 @@ fn with_interpolated_normals() {
         let mut b = Builder::seen_from(Vec3::new(0.0, 1.0, 4.0), Vec3::ZERO, 36.0, SIDE);
         let (floor, white) = (b.diffuse(0.8), b.diffuse(0.9));
         let ball = if phong { glossy(&mut b, 0.3, 0.6, 8.0) } else { white };
-        b.shape(Geometry::Rectangle, facing(DVec3::NEG_Y, 1.5, DVec3::X, -90.0), floor);
+        b.mesh(leaning_floor(), floor);
         b.mesh(smooth_ball(Vec3::new(-0.6, -0.3, 0.0), 0.7), ball);
         b.mesh(smooth_ball(Vec3::new(0.8, -0.3, 0.2), 0.6), white);
         b.point_light(Vec3::new(0.3, 2.0, 1.5), 6.0);
