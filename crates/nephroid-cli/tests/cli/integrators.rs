@@ -106,14 +106,19 @@ fn parameters_are_checked_where_they_stand() {
 
 #[test]
 fn path_and_light_tracing_and_photon_mapping_agree() {
-    // Of direct light all make unbiased estimates, whose means are 1 % apart at the very most.
+    // Of direct light all make unbiased estimates. The means of the first two are 1 % apart at the very most. Most of
+    // the light paths miss the picture: of so many the mean has a deviation of 1.2 %.
     let dir = dir_with(OURS);
-    let args = ["render", "a.xml", "--spp", "64", "--max-depth", "2", "-o"];
-    dir.run(&[&args[..], &["p.exr"]].concat()).ends_with(0);
-    for integrator in ["path", "ptracer"] {
-        dir.run(&[&args[..], &["q.exr", "--integrator", integrator]].concat()).ends_with(0);
+    let render = |integrator: &str, spp: &str, file: &str| {
+        let args =
+            ["render", "a.xml", "--max-depth", "2", "-o", file, "--spp", spp, "--integrator", integrator];
+        dir.run(&args).ends_with(0);
+    };
+    render("photonmapper", "64", "p.exr");
+    for (integrator, spp, tolerance) in [("path", "64", 0.01), ("ptracer", "4096", 0.07)] {
+        render(integrator, spp, "q.exr");
         let measures = dir.run(&["compare", "p.exr", "q.exr", "--json"]).ends_with(0).json();
         let ratio = measures["mean_ratio"].as_f64().unwrap();
-        assert!((ratio - 1.0).abs() < 0.01, "{integrator}: {ratio}");
+        assert!((ratio - 1.0).abs() < tolerance, "{integrator}: {ratio}");
     }
 }
