@@ -62,7 +62,7 @@ impl<'a> LightTracer<'a> {
         let light = LightPass {
             seed: pass.seed,
             iteration: pass.iteration,
-            first_path: pixels * u64::from(pass.first_sample),
+            first_path: pixels * pass.first_sample,
             paths,
             max_depth: self.config.max_depth,
         };
