@@ -86,8 +86,9 @@ impl<'a> Lit<'a> {
     }
 }
 
-/// Reflected direct light at a surface towards `wo`, in W/(m²·sr), lights sampled only; glossy lobes
-/// also by a ray sampled from the BSDF, weighted by the power heuristic.
+/// Reflected direct light at a surface towards `wo`, in W/(m²·sr), lights sampled only; glossy lobes, and under a sky
+/// all surfaces, also by a ray sampled from the BSDF, weighted by the power heuristic: most of a sky is below the
+/// horizon or hidden, and the rest is found as the BSDF weighs it.
 pub(crate) fn direct_light(
     world: &World,
     hit: &Hit,
@@ -98,7 +99,7 @@ pub(crate) fn direct_light(
     sampler: &mut Sampler,
 ) -> Rgb {
     let lit = Lit { scatterer: Scatterer::Surface { hit, bsdf }, wo, inside };
-    if !bsdf.has_glossy_lobe() {
+    if !bsdf.has_glossy_lobe() && !world.has_sky() {
         return sample_lights(world, &lit, lights, Partner::None, sampler);
     }
     let by_lights = sample_lights(world, &lit, lights, Partner::BsdfSample, sampler);
