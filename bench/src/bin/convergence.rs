@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use nephroid::integrator::{Method, PathConfig, PhotonMapperConfig};
+use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig};
 use nephroid::observer::Silent;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
@@ -30,6 +30,11 @@ use nephroid_formats::vfs::DiskFiles;
 fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
     Some(match name {
         "photonmapper" => Method::PhotonMapper(PhotonMapperConfig { max_depth, ..Default::default() }),
+        "ppm" => {
+            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
+            Method::Ppm(PpmConfig { mapper, ..Default::default() })
+        }
+        "ptracer" => Method::LightTracer(LightTracerConfig { max_depth }),
         "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),
         "volpath" => Method::Path(PathConfig { max_depth, media: true, ..Default::default() }),
         _ => return None,
