@@ -21,7 +21,7 @@ const HALF: Vec2 = Vec2::new(2.03, 1.53);
 const LENGTHS: [f32; 11] = [1.9, 1.55, 1.3, 1.08, 0.94, 0.83, 0.74, 0.66, 0.59, 0.53, 0.47];
 
 /// How steep each wave is at most.
-const SLOPE: f32 = 0.065;
+const SLOPE: f32 = 0.104;
 
 fn main() -> io::Result<()> {
     let usage = || io::Error::other("write pool_water FILE.ply");
