@@ -44,6 +44,7 @@ fn chart(path: &Path, curves: &[Curve]) -> Result<(), Box<dyn std::error::Error>
         .configure_mesh()
         .x_desc("CPU seconds")
         .y_desc("relMSE")
+        .max_light_lines(1)
         .light_line_style(RGBColor(238, 238, 238))
         .label_style(("sans-serif", 13))
         .x_label_formatter(&|x| format!("{x}"))
