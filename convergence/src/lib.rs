@@ -12,7 +12,8 @@ pub use fog::{
 };
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
 pub use view::{
-    block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders,
+    block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, pixel_origins,
+    renders,
 };
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,

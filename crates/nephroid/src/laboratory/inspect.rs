@@ -6,12 +6,12 @@ use super::photons;
 use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
 use crate::integrator::{
-    Components, Estimator, Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PpmConfig,
-    Turn,
+    Components, Estimator, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
+    PpmConfig, Turn,
 };
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
-use crate::session::{RenderPlan, RenderSettings, samples_of_step};
+use crate::session::{Place, RenderPlan, RenderSettings, camera_pass_of, samples_of_step};
 use crate::transport::{Ledger, PixelSample, pixel_key};
 use crate::world::World;
 
@@ -95,6 +95,9 @@ impl<'w> Inspector<'w> {
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
             }
+            Method::LightTracer(config) => {
+                self.take(&LightTracer::new(self.world, &config), None, taken);
+            }
         }
         self.samples += taken;
         self.samples_in_all += u64::from(taken);
@@ -148,11 +151,14 @@ impl<'w> Inspector<'w> {
 
     fn take(&mut self, estimator: &impl Estimator, catalogues: Option<&[Catalogue; 4]>, samples: u32) {
         let filter = FilterSampler::new(self.world.scene().film.filter);
-        let key = pixel_key(self.settings.seed, self.iteration, self.pixel);
+        let place = Place { iteration: self.iteration, samples: self.samples };
+        let pass = camera_pass_of(&self.settings, &self.plan.camera, place, samples);
+        let key = pixel_key(pass.seed, pass.iteration, self.pixel);
         let (mut neighbors, mut sum, mut parts) =
             (NearestList::new(), PixelSum::default(), AovSum::default());
         for index in self.samples..self.samples + samples {
-            let (mut sample, weight) = PixelSample::new(self.world, &filter, key, self.pixel, index);
+            let number = pass.first_sample + u64::from(index - self.samples);
+            let (mut sample, weight) = PixelSample::new(self.world, &filter, key, self.pixel, number);
             let (origin, direction) = (sample.ray.origin, sample.ray.direction);
             let mut probe = InspectProbe::new(catalogues);
             let light = estimator.radiance(&mut sample, &mut neighbors, &mut probe);

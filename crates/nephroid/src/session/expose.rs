@@ -1,7 +1,7 @@
 //! The camera pass of a step, with further values of the picture or without.
 
 use crate::film::{AovFilm, AovSum, Film, PixelSum};
-use crate::integrator::{AovProbe, Estimator, PictureSums};
+use crate::integrator::{AovProbe, Brought, Estimator, PictureSums};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::transport::{CameraPass, Exposure, camera_pass};
@@ -19,6 +19,16 @@ impl Exposed {
         match self {
             Self::Picture(exposure) => (&exposure.total, exposure.complete),
             Self::WithAovs(exposure) => (&exposure.total, exposure.complete),
+        }
+    }
+
+    /// Adds what light paths brought.
+    pub fn add(&mut self, light: &Brought) {
+        match self {
+            Self::Picture(exposure) => light.add_to(exposure.sums.iter_mut(), &mut exposure.total),
+            Self::WithAovs(exposure) => {
+                light.add_to(exposure.sums.iter_mut().map(|(sum, _)| sum), &mut exposure.total);
+            }
         }
     }
 

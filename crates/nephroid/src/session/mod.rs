@@ -11,7 +11,9 @@ pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
 
 use crate::film::{Aov, AovFilm, Film, MergeError};
-use crate::integrator::{Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn};
+use crate::integrator::{
+    CameraPlan, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
+};
 use crate::observer::Observer;
 use crate::transport::{CameraPass, Ledger};
 use crate::world::World;
@@ -23,6 +25,21 @@ const STEP_SAMPLES: u32 = 4;
 /// iteration share photons and are few, and so they are one step and one estimate.
 pub(crate) fn samples_of_step(method: &Method, left: u32) -> u32 {
     if matches!(method, Method::Ppm(_)) { left } else { STEP_SAMPLES.min(left) }
+}
+
+/// The samples of a step. Those of progressive iterations are numbered through all of them: they are as well spread as
+/// those of one long iteration.
+pub(crate) fn camera_pass_of(
+    settings: &RenderSettings,
+    camera: &CameraPlan,
+    place: Place,
+    samples: u32,
+) -> CameraPass {
+    let (iteration, first_sample) = match settings.method {
+        Method::Ppm(_) => (0, place.samples_before(camera.samples_per_pixel)),
+        _ => (place.iteration, u64::from(place.samples)),
+    };
+    CameraPass { seed: settings.seed, iteration, first_sample, samples }
 }
 
 /// How to render.
@@ -108,12 +125,8 @@ impl<'w> Session<'w> {
         if self.place.samples >= whole {
             (self.place, self.maps) = (Place { iteration: self.place.iteration + 1, samples: 0 }, None);
         }
-        let pass = CameraPass {
-            seed: self.settings.seed,
-            iteration: self.place.iteration,
-            first_sample: self.place.samples,
-            samples: samples_of_step(&self.settings.method, whole - self.place.samples),
-        };
+        let samples = samples_of_step(&self.settings.method, whole - self.place.samples);
+        let pass = camera_pass_of(&self.settings, &self.plan.camera, self.place, samples);
         let done = match self.settings.method.clone() {
             Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
             Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
@@ -122,12 +135,19 @@ impl<'w> Session<'w> {
                 let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
                 self.take(exposed)
             }
+            Method::LightTracer(config) => {
+                let tracer = LightTracer::new(self.world, &config);
+                let Some(light) = tracer.paths(&pass, observer) else { return false };
+                let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                exposed.add(&light);
+                self.take(exposed)
+            }
         };
         if done {
-            self.place.samples += pass.samples;
             self.statistics.samples_per_pixel += u64::from(pass.samples);
-            self.statistics.iterations +=
-                u64::from(pass.first_sample == 0 || self.statistics.iterations == 0);
+            let begun = self.place.samples == 0 || self.statistics.iterations == 0;
+            self.statistics.iterations += u64::from(begun);
+            self.place.samples += pass.samples;
         }
         done
     }
@@ -184,7 +204,7 @@ impl<'w> Session<'w> {
     ) -> bool {
         let (world, plan) = (self.world, self.plan);
         if self.maps.is_none() {
-            let turn = Turn::new(&self.settings.method, &plan.camera, pass.seed, pass.iteration);
+            let turn = Turn::new(&self.settings.method, &plan.camera, pass.seed, self.place.iteration);
             let Some(maps) = Maps::build(world, config, &plan.photons, &turn, observer) else { return false };
             self.statistics.count(&maps, &mut self.ledger);
             let given = self.guides.take();

@@ -15,9 +15,10 @@ const TILE: u32 = 16;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraPass {
     pub seed: u64,
+    /// The iteration, or that in whose name samples of a series of iterations are numbered through.
     pub iteration: u64,
-    /// Index of the first sample of each pixel, within the iteration.
-    pub first_sample: u32,
+    /// Number of the first sample of each pixel, among those of that name.
+    pub first_sample: u64,
     /// How many samples of each pixel.
     pub samples: u32,
 }
@@ -28,8 +29,8 @@ pub(crate) struct PixelSample {
     pub ray: Ray,
     /// Names the pixel and the purpose; derive the keys of further sequences from it.
     pub key: Key,
-    /// Index of the sample within the pixel and the iteration.
-    pub index: u32,
+    /// Number of the sample within the pixel and the iteration, or the series of them.
+    pub index: u64,
     pub sampler: Sampler,
 }
 
@@ -40,9 +41,9 @@ impl PixelSample {
         filter: &FilterSampler,
         key: Key,
         (x, y): (u32, u32),
-        index: u32,
+        index: u64,
     ) -> (Self, f32) {
-        let mut sampler = Sampler::new(Sequence::Sobol, key, u64::from(index));
+        let mut sampler = Sampler::new(Sequence::Sobol, key, index);
         let offset = filter.sample(sampler.next_2d());
         // Drawn without a lens, too, so that later sets of four stay aligned.
         let u_lens = sampler.next_2d();
@@ -96,7 +97,7 @@ pub(crate) fn camera_pass<P: Clone + Default + Send, T: Default + Send, S>(
                 let place = (x + window.x, y + window.y);
                 let key = pixel_key(pass.seed, pass.iteration, place);
                 let mut sum = P::default();
-                for index in pass.first_sample..pass.first_sample + pass.samples {
+                for index in pass.first_sample..pass.first_sample + u64::from(pass.samples) {
                     let (sample, weight) = PixelSample::new(world, &filter, key, place, index);
                     estimate(sample, weight, scratch, &mut sum, &mut total);
                 }

@@ -71,6 +71,7 @@ impl World {
             cutouts,
             transparent,
             surface_lights: emitters.len(),
+            sky: emitters.iter().any(Emitter::is_sky),
             emitters,
             by_power,
             for_direct,

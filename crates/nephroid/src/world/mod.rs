@@ -49,6 +49,8 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
+    /// Whether any of them is a sky.
+    sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
@@ -178,6 +180,11 @@ impl World {
 
     pub(crate) fn camera(&self) -> &CameraRays {
         &self.camera
+    }
+
+    /// Whether light comes from a sky, in all directions.
+    pub(crate) fn has_sky(&self) -> bool {
+        self.sky
     }
 
     /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.

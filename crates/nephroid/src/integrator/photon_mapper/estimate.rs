@@ -175,7 +175,8 @@ impl<'a> PhotonMapper<'a> {
                 let end = hit.map_or(f32::INFINITY, |hit| hit.t);
                 let open = [way.entered, hit.is_some_and(|hit| self.world.ends_medium(&hit))];
                 let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth, open };
-                let samples = if sample.index.is_multiple_of(self.stride) { self.stride } else { 0 };
+                let samples =
+                    if sample.index.is_multiple_of(u64::from(self.stride)) { self.stride } else { 0 };
                 let (seen, through) = self.through_medium(&segment, samples, &mut sample.sampler, tools);
                 out.medium += throughput * seen;
                 throughput *= through;
@@ -243,7 +244,7 @@ impl<'a> PhotonMapper<'a> {
             beside += direct;
             tools.probe.light(LightPart::Direct, direct);
         }
-        if !sample.index.is_multiple_of(self.stride) {
+        if !sample.index.is_multiple_of(u64::from(self.stride)) {
             return;
         }
         let throughput = throughput * self.stride as f32;
@@ -292,7 +293,7 @@ impl<'a> PhotonMapper<'a> {
             let wanted = self.weight_of_gathering(&bsdf, guide.as_ref(), beside, branch.share);
             let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
             let key = sample.key.with(branch.number);
-            let first = u64::from(sample.index / self.stride) * u64::from(most);
+            let first = sample.index / u64::from(self.stride) * u64::from(most);
             let found: Rgb = (first..first + u64::from(rays))
                 .map(|ray| {
                     tools.probe.begin(Some(ray), throughput / rays as f32);

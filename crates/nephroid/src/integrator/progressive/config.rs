@@ -2,7 +2,7 @@ use crate::integrator::PhotonMapperConfig;
 use crate::transport::{MapPlan, PhotonPlan};
 
 /// Photons of an estimate in the first iteration where that has [`PHOTONS`] in a map.
-const NEIGHBOURS: f64 = 30.0;
+const NEIGHBOURS: f64 = 50.0;
 
 /// See [`NEIGHBOURS`].
 const PHOTONS: f64 = 200_000.0;

@@ -8,7 +8,7 @@ mod trial;
 
 pub use config::PpmConfig;
 
-use super::photon_mapper::{CameraPlan, Guides, Maps, Turn};
+use super::photon_mapper::{CameraPlan, FinalGather, Guides, Maps, Turn};
 use crate::observer::Silent;
 use crate::photon_map::Blur;
 use crate::sampling::{Key, Stream};
@@ -54,6 +54,9 @@ pub(crate) fn plan(world: &World, config: &PpmConfig, seed: u64) -> (PhotonPlan,
         false => tried,
     };
     camera.neighbours = config.neighbours(&photons);
+    if let (FinalGather::Rays(asked), true) = (config.mapper.final_gather, gathers) {
+        camera.gather_rays = Some(asked);
+    }
     if let Some(samples) = config.samples_per_pixel {
         camera.samples_per_pixel = samples.max(1).next_multiple_of(camera.stride);
     }

@@ -1,0 +1,210 @@
+//! Errors of whole renders against CPU seconds: how fast each integrator comes near a reference.
+//!
+//! `convergence [OPTIONS] SCENE.xml REFERENCE.exr …`, as many pairs as wanted. A pair of folders stands for all scenes of
+//! the one that have a reference of the same name in the other. A reference `A.exr,B.exr` is the mean of two that are
+//! independent of one another; its own noise is then known, and taken off.
+//!
+//! - `--methods photonmapper,path`: integrators, each with its defaults and the scene's `max_depth`
+//! - `--spp 8`: camera samples of each pixel in an iteration; iterations follow one another without end
+//! - `--marks 1,2,5,10,20,30,60`: CPU seconds, of all threads, at which the picture is looked at
+//! - `--seed 0`
+//! - `--csv FILE`: the table once more
+//!
+//! Time runs while photons are traced and pixels sampled. Reading files, preparing the world and comparing pictures is
+//! not counted. A picture is looked at after the first step that ends at a mark or behind it; where it passes several, once.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use nephroid::integrator::{Method, PathConfig, PhotonMapperConfig};
+use nephroid::observer::Silent;
+use nephroid::session::{RenderSettings, Session};
+use nephroid::world::World;
+use nephroid_bench::cpu_time;
+use nephroid_bench::reference::Reference;
+use nephroid_formats::mitsuba::{Options, SceneFile, read_scene};
+use nephroid_formats::vfs::DiskFiles;
+
+/// The integrator of a name, with its defaults.
+fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
+    Some(match name {
+        "photonmapper" => Method::PhotonMapper(PhotonMapperConfig { max_depth, ..Default::default() }),
+        "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),
+        "volpath" => Method::Path(PathConfig { max_depth, media: true, ..Default::default() }),
+        _ => return None,
+    })
+}
+
+/// What may be given beside scenes and references.
+const OPTIONS: [&str; 5] = ["--methods", "--spp", "--marks", "--seed", "--csv"];
+
+struct Arguments {
+    methods: Vec<String>,
+    samples_per_pixel: u32,
+    marks: Vec<f64>,
+    seed: u64,
+    csv: Option<PathBuf>,
+    /// Scenes and their references.
+    pairs: Vec<(PathBuf, String)>,
+}
+
+fn main() -> ExitCode {
+    match Arguments::read(std::env::args().skip(1)).and_then(|arguments| run(&arguments)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("convergence: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), String> {
+    let mut csv = "scene,method,cpu_s,iterations,samples,rel_mse,noise,mean_ratio\n".to_string();
+    for (scene, reference) in &arguments.pairs {
+        csv += &report(scene, &Reference::read(reference)?, arguments)?;
+        if let Some(path) = &arguments.csv {
+            std::fs::write(path, &csv).map_err(|e| format!("{}: {e}", path.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Prints a scene's table; returns the same for the CSV file.
+fn report(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<String, String> {
+    let file = read_scene(path, &DiskFiles, &Options::default()).map_err(|e| e.to_string())?;
+    let max_depth = max_depth(&file)?;
+    let world = World::new(file.scene).map_err(|e| format!("{}: {e}", path.display()))?;
+    let scene = path.file_stem().unwrap_or_default().to_string_lossy();
+    println!("\n### {scene}\n");
+    match reference.noise() {
+        Some(noise) => println!("The reference's own noise, {noise:.1e}, is taken off.\n"),
+        None => println!("The reference's own noise is not known and not taken off.\n"),
+    }
+    println!("| method | CPU s | iterations | samples | relMSE | mean |\n|---|---:|---:|---:|---:|---:|");
+    let noise = reference.noise().map(|noise| format!("{noise:.6}")).unwrap_or_default();
+    let mut csv = String::new();
+    for name in &arguments.methods {
+        let method = method(name, max_depth).ok_or("no such integrator")?;
+        converge(&world, method, reference, arguments, |row| {
+            let Row { cpu, iterations, samples, rel_mse, mean_ratio } = row;
+            println!("| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |");
+            csv += &format!(
+                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}\n"
+            );
+        })?;
+    }
+    Ok(csv)
+}
+
+/// A picture at a mark.
+struct Row {
+    cpu: f64,
+    iterations: u64,
+    samples: u64,
+    rel_mse: f64,
+    mean_ratio: f64,
+}
+
+/// Renders until the last mark, and shows the picture at each, unless that was seen already.
+fn converge(
+    world: &World,
+    method: Method,
+    reference: &Reference,
+    arguments: &Arguments,
+    mut seen: impl FnMut(Row),
+) -> Result<(), String> {
+    let Arguments { samples_per_pixel, marks, seed, .. } = arguments;
+    let settings = RenderSettings { method, samples_per_pixel: *samples_per_pixel, seed: *seed };
+    let (mut session, mut cpu) = (None, Duration::ZERO);
+    cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
+    let mut session = session.ok_or("no session")?;
+    let mut shown = None;
+    for &mark in marks {
+        while cpu.as_secs_f64() < mark {
+            cpu += cpu_time(|| {
+                session.step(&Silent);
+            });
+        }
+        if shown.replace(cpu) == Some(cpu) {
+            continue;
+        }
+        let (rel_mse, mean_ratio) = reference.compare(&session.film().develop())?;
+        let statistics = session.statistics();
+        seen(Row {
+            cpu: cpu.as_secs_f64(),
+            iterations: statistics.iterations,
+            samples: statistics.samples_per_pixel,
+            rel_mse,
+            mean_ratio,
+        });
+    }
+    Ok(())
+}
+
+/// What the scene says of the longest path; less than nothing is no end.
+fn max_depth(file: &SceneFile) -> Result<Option<u32>, String> {
+    let depth = file.integrator.get_int("max_depth").map_err(|e| e.to_string())?;
+    Ok(depth.and_then(|depth| u32::try_from(depth).ok()))
+}
+
+impl Arguments {
+    fn read(mut words: impl Iterator<Item = String>) -> Result<Self, String> {
+        let mut arguments = Self {
+            methods: vec!["photonmapper".to_string()],
+            samples_per_pixel: 8,
+            marks: vec![1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0],
+            seed: 0,
+            csv: None,
+            pairs: Vec::new(),
+        };
+        while let Some(word) = words.next() {
+            if word.starts_with("--") && !OPTIONS.contains(&word.as_str()) {
+                return Err(format!("no option is called {word}"));
+            }
+            let value = words.next().ok_or_else(|| format!("{word} needs a value or a reference"))?;
+            let wrong = |e: &dyn std::fmt::Display| format!("{word} {value}: {e}");
+            match word.as_str() {
+                "--methods" => {
+                    arguments.methods = value.split(',').map(str::to_string).collect();
+                    if let Some(unknown) = arguments.methods.iter().find(|name| method(name, None).is_none())
+                    {
+                        return Err(format!("no integrator is called {unknown}"));
+                    }
+                }
+                "--spp" => arguments.samples_per_pixel = value.parse().map_err(|e| wrong(&e))?,
+                "--marks" => {
+                    let marks: Result<_, _> = value.split(',').map(str::parse).collect();
+                    arguments.marks = marks.map_err(|e| wrong(&e))?;
+                }
+                "--seed" => arguments.seed = value.parse().map_err(|e| wrong(&e))?,
+                "--csv" => arguments.csv = Some(PathBuf::from(value)),
+                scene if Path::new(scene).is_dir() => {
+                    arguments.pairs.extend(pairs_of_folders(Path::new(scene), Path::new(&value))?);
+                }
+                scene => arguments.pairs.push((PathBuf::from(scene), value)),
+            }
+        }
+        if arguments.pairs.is_empty() {
+            return Err("which SCENE.xml, and which REFERENCE.exr?".to_string());
+        }
+        Ok(arguments)
+    }
+}
+
+/// Scenes that have a reference, by name: `NAME.exr`, or the halves `NAME.a.exr` and `NAME.b.exr`.
+fn pairs_of_folders(scenes: &Path, references: &Path) -> Result<Vec<(PathBuf, String)>, String> {
+    let entries = scenes.read_dir().map_err(|e| format!("{}: {e}", scenes.display()))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    files.sort();
+    let reference = |scene: &Path| {
+        let name = scene.file_stem()?.to_string_lossy();
+        let [whole, a, b] = ["", ".a", ".b"].map(|part| references.join(format!("{name}{part}.exr")));
+        if a.exists() && b.exists() {
+            return Some(format!("{},{}", a.display(), b.display()));
+        }
+        whole.exists().then(|| whole.display().to_string())
+    };
+    Ok(files.into_iter().filter_map(|scene| reference(&scene).map(|r| (scene, r))).collect())
+}
