@@ -32,7 +32,8 @@ fn main() -> io::Result<()> {
 fn mesh() -> Vec<u8> {
     let [across, along] = CELLS;
     let row = across + 1;
-    let mut file = header(usize::from(row) * usize::from(along + 1), usize::from(across) * usize::from(along));
+    let mut file =
+        header(usize::from(row) * usize::from(along + 1), usize::from(across) * usize::from(along));
     for j in 0..=along {
         for i in 0..=across {
             let part = Vec2::new(f32::from(i) / f32::from(across), f32::from(j) / f32::from(along));

@@ -47,8 +47,12 @@ fn chart(path: &Path, curves: &[Curve]) -> Result<(), Box<dyn std::error::Error>
         .max_light_lines(1)
         .light_line_style(RGBColor(238, 238, 238))
         .label_style(("sans-serif", 13))
-        .x_label_formatter(&|x| format!("{x}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .x_labels(40)
+        .y_labels(40)
+        .x_label_formatter(&|x| {
+            if [1, 2, 5].contains(&leading_digit(*x)) { format!("{x}") } else { String::new() }
+        })
+        .y_label_formatter(&|y| if leading_digit(*y) == 1 { format!("{y:.0e}") } else { String::new() })
         .draw()?;
     for (curve, color) in curves.iter().zip(COLORS.iter().cycle()) {
         let points = || curve.points.iter().copied().filter(|p| p.1 > 0.0);
@@ -79,4 +83,9 @@ fn chart(path: &Path, curves: &[Curve]) -> Result<(), Box<dyn std::error::Error>
         .draw()?;
     root.present()?;
     Ok(())
+}
+
+/// The first digit that is not zero, for there is no room for a label at each line.
+fn leading_digit(value: f64) -> i64 {
+    (value / 10_f64.powf((value.log10() + 1e-9).floor())).round() as i64
 }
