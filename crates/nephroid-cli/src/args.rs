@@ -9,6 +9,7 @@ use crate::lab_args::{InspectArgs, PhotonsArgs};
 use crate::layers;
 use crate::method::Integrator;
 use crate::parameters::PhotonFlags;
+use crate::session_args::{MergeArgs, ResumeArgs, SessionArgs, WatchArgs};
 
 /// Photon mapping: renders scenes in the XML of Mitsuba 3.
 ///
@@ -25,6 +26,10 @@ struct Cli {
 pub enum Command {
     /// Render a scene
     Render(Box<RenderArgs>),
+    /// Go on with a render that was interrupted, or add passes to one
+    Resume(ResumeArgs),
+    /// Put parts of a render together that were rendered apart
+    Merge(MergeArgs),
     /// List the built-in scenes, or print the file of one
     Scenes(ScenesArgs),
     /// Make a picture for a display from a file of radiances
@@ -47,6 +52,16 @@ pub fn parse() -> Command {
     cli.command
 }
 
+/// The flags of a `render` that were given to another process; `arguments` begin with that word.
+pub fn of_render(arguments: &[String]) -> Result<RenderArgs, String> {
+    let given = std::iter::once("nephroid").chain(arguments.iter().map(String::as_str));
+    match Cli::try_parse_from(given) {
+        Ok(Cli { command: Command::Render(args) }) => Ok(*args),
+        Ok(_) => Err("it is not of a render".to_owned()),
+        Err(error) => Err(error.to_string().lines().next().unwrap_or_default().to_owned()),
+    }
+}
+
 /// How a scene is read.
 #[derive(Args, Debug)]
 pub struct SceneArgs {
@@ -63,8 +78,8 @@ pub struct SceneArgs {
 pub struct RenderArgs {
     /// A scene file, or the name of a built-in scene [default: cornell]
     pub scene: Option<PathBuf>,
-    /// A picture to write, .exr (radiance) or .png (for a display); may be repeated
-    /// [default: SCENE.exr and SCENE.png in the current folder]
+    /// A file to write: .exr (radiance), .png (for a display) or .film (exact sums, to go on with or to merge); may
+    /// be repeated [default: SCENE.exr and SCENE.png in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -94,6 +109,10 @@ pub struct RenderArgs {
     pub aovs: Vec<Aov>,
     #[command(flatten)]
     pub limits: LimitArgs,
+    #[command(flatten)]
+    pub session: SessionArgs,
+    #[command(flatten)]
+    pub watch: WatchArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
     #[command(flatten)]
@@ -207,7 +226,8 @@ pub fn resolution(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+/// A length of time.
+pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, "write a number of seconds above zero", |s| s > 0.0 && s < 1e9)
 }
 
@@ -231,6 +251,15 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn flags_of_another_process_are_read_as_ours() {
+        let words = |text: &str| -> Vec<String> { text.split(' ').map(str::to_owned).collect() };
+        let args = of_render(&words("render cornell --photons 77 -o a.film --pass-range 2..3")).unwrap();
+        assert!(args.photons.has("photons") && args.session.pass_range.is_some());
+        assert_eq!(args.outputs, [PathBuf::from("a.film")]);
+        assert!(of_render(&words("scenes")).is_err());
     }
 
     #[test]

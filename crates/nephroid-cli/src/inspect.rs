@@ -66,14 +66,19 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
             "pixel {x},{y} is outside the picture of {width} by {height} pixels: X goes from 0 to {right}, Y from 0 to {below}"
         )));
     }
-    let samples = plan.total_samples().unwrap_or(u64::MAX);
+    // Passes of a progressive render have samples of their own number.
+    let end = match &settings.method {
+        Method::Ppm(_) => plan.samples,
+        _ => plan.end(plan.samples_per_pass),
+    };
+    let samples = end.unwrap_or(u64::MAX);
     if let Some(n) = args.sample.filter(|n| *n as u64 >= samples) {
         return Err(Failure::Usage(format!(
             "there is no sample {n}: the pixel has {samples}, counted from 0"
         )));
     }
     let visible = !args.run.quiet && !args.json && std::io::stderr().is_terminal();
-    let watch = Watch::new(visible, None, None, progress::listen()?);
+    let watch = Watch::new(visible, None, progress::listen()?);
     render::pool(args.run.threads)?.install(|| {
         let world = load::world(file.scene, &file.origins)?;
         let mut inspector = Inspector::new(&world, settings.clone(), (window.x + x, window.y + y), &watch);

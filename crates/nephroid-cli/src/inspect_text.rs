@@ -11,7 +11,7 @@ use nephroid::transport::Bounces;
 
 use crate::inspect::Inspected;
 use crate::inspect_json::part;
-use crate::report::plural;
+use crate::numbers::plural;
 
 /// The pixel, and each sample. Gather rays are summed up, but for a sample that was asked for alone.
 pub fn text(inspected: &Inspected<'_>) -> String {

@@ -8,7 +8,6 @@ use nephroid_formats::mitsuba::AovLayer;
 use crate::console::Messages;
 use crate::exit::Failure;
 use crate::lab_args::unknown;
-use crate::output::{Kind, Output};
 
 /// A layer to write.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,10 +27,10 @@ pub struct DevelopedLayer {
     image: AovImage,
 }
 
-impl DevelopedLayer {
+impl LayerPlan {
     /// What it is called.
     pub fn name(&self) -> &str {
-        &self.plan.name
+        &self.name
     }
 }
 
@@ -41,15 +40,15 @@ pub fn parse(name: &str) -> Result<Aov, String> {
         .ok_or_else(|| unknown(name, "there is no such value: it must be", &Aov::ALL.map(Aov::name)))
 }
 
-/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names.
+/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names. None if no file
+/// `keeps_layers`.
 pub fn choose(
     flags: &[Aov],
     of_scene: &[AovLayer],
     method: &Method,
-    outputs: &[Output],
+    keeps_layers: bool,
     messages: &mut Messages,
 ) -> Result<Vec<LayerPlan>, Failure> {
-    let has_exr = outputs.iter().any(|output| output.kind == Kind::Exr);
     let mut layers: Vec<LayerPlan> = Vec::new();
     for aov in flags {
         if let Some(reason) = lacks(method, *aov) {
@@ -63,8 +62,8 @@ pub fn choose(
             layers.push(plan);
         }
     }
-    if !layers.is_empty() && !has_exr {
-        let message = "--aov: layers are written to OpenEXR files only; name one with -o FILE.exr";
+    if !layers.is_empty() && !keeps_layers {
+        let message = "--aov: layers are written to OpenEXR and film files only; name one with -o FILE.exr";
         return Err(Failure::Usage(message.to_owned()));
     }
     for layer in of_scene {
@@ -77,7 +76,7 @@ pub fn choose(
             layers.push(LayerPlan { name: layer.name.clone(), aov: layer.aov, channels: layer.channels() });
         }
     }
-    if !layers.is_empty() && !has_exr {
+    if !layers.is_empty() && !keeps_layers {
         messages.warning("the layers that the scene asks for are left out: no OpenEXR file is written");
         layers.clear();
     }

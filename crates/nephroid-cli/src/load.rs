@@ -14,6 +14,7 @@ use nephroid_formats::vfs::DiskFiles;
 use crate::args::SceneArgs;
 use crate::builtin::{self, BuiltinScene};
 use crate::exit::Failure;
+use crate::identity::{Identity, RecordingFiles, fingerprint};
 use crate::scenes;
 
 /// What the pictures of a scene are called: the name of its file without the suffix.
@@ -29,17 +30,31 @@ fn builtin_of(scene: &Path) -> Option<&'static BuiltinScene> {
     scene.to_str().and_then(builtin::find).filter(|_| !scene.is_file())
 }
 
+/// Whether a scene of that name is a file, and not a built-in one.
+pub fn is_file(scene: &Path) -> bool {
+    builtin_of(scene).is_none() && scene.is_file()
+}
+
 /// Reads the file of that name, or the built-in scene where there is no such file.
 pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
+    load_recorded(scene, args).map(|(file, _)| file)
+}
+
+/// Reads it, and tells the fingerprints of its text and of every file it reads.
+pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Identity), Failure> {
     let options = Options { defines: args.defines.clone(), lenient: args.lenient };
-    let file = match builtin_of(scene) {
-        Some(builtin) => read_scene_str(&format!("{}.xml", builtin.name), builtin.text, builtin, &options),
-        None => {
-            check_readable(scene)?;
-            read_scene(scene, &DiskFiles, &options)
-        }
-    };
-    file.map_err(Failure::Scene)
+    if let Some(builtin) = builtin_of(scene) {
+        let files = RecordingFiles::new(builtin);
+        let name = format!("{}.xml", builtin.name);
+        let file = read_scene_str(&name, builtin.text, &files, &options).map_err(Failure::Scene)?;
+        let mut identity = vec![("scene".to_owned(), fingerprint(builtin.text.as_bytes()))];
+        identity.extend(files.fingerprints(Path::new(&name)));
+        return Ok((file, identity));
+    }
+    check_readable(scene)?;
+    let files = RecordingFiles::new(&DiskFiles);
+    let file = read_scene(scene, &files, &options).map_err(Failure::Scene)?;
+    Ok((file, files.fingerprints(scene)))
 }
 
 /// Tells a file that cannot be read, which is no fault of the scene.

@@ -2,28 +2,41 @@
 
 mod args;
 mod builtin;
+mod checkpoint;
 mod compare;
 mod console;
 mod exit;
 mod fault;
+mod films;
+mod identity;
 mod info;
 mod info_media;
 mod inspect;
 mod inspect_json;
 mod inspect_text;
+mod job;
 mod lab_args;
 mod layers;
 mod load;
 mod media_flags;
+mod merge;
 mod method;
+mod noise;
+mod numbers;
 mod output;
 mod parameters;
 mod photons;
 mod plan;
+mod plan_json;
+mod preview;
 mod progress;
 mod render;
+mod rendering;
 mod report;
+mod resume;
 mod scenes;
+mod session_args;
+mod tev;
 mod tonemap;
 mod values;
 
@@ -44,6 +57,8 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Render(args) => render::run(args),
+        Command::Resume(args) => resume::run(args),
+        Command::Merge(args) => merge::run(args),
         Command::Scenes(args) => scenes::run(args),
         Command::Tonemap(args) => tonemap::run(args),
         Command::Compare(args) => compare::run(args),

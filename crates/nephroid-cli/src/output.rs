@@ -3,12 +3,10 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use nephroid::film::ToneMap;
 use nephroid::texture::Image;
-use nephroid_formats::image::{
-    ImageError, Layer, LayerData, check_writable, read_image, write_exr, write_png,
-};
+use nephroid_formats::image::{Layer, LayerData, check_writable, read_image, write_exr, write_png};
 
+use crate::args::DisplayArgs;
 use crate::exit::Failure;
 use crate::layers::{DevelopedLayer, with_layers};
 
@@ -19,6 +17,8 @@ pub enum Kind {
     Exr,
     /// PNG: made for a display.
     Png,
+    /// The exact sums.
+    Film,
 }
 
 /// A file to write.
@@ -37,11 +37,13 @@ impl Output {
         let kind = match suffix.as_deref() {
             Some("exr") => Kind::Exr,
             Some("png") => Kind::Png,
-            Some("film") => {
-                let message = "film files, which keep a render to go on with, cannot be written yet";
-                return Err(usage(path, message));
+            Some("film") => Kind::Film,
+            _ => {
+                return Err(usage(
+                    path,
+                    "the name of a picture ends in .exr or .png, that of a film in .film",
+                ));
             }
-            _ => return Err(usage(path, "the name of a picture ends in .exr or .png")),
         };
         Ok(Self { path: path.to_owned(), kind })
     }
@@ -53,22 +55,27 @@ impl Output {
             (true, _) => Ok(output),
             (false, Kind::Png) => Err(usage(path, "this picture is a .png")),
             (false, Kind::Exr) => Err(usage(path, "this picture is an .exr")),
+            (false, Kind::Film) => Err(usage(path, "this file is a .film")),
         }
     }
 
     fn write(
         &self,
-        image: &Image,
-        layers: &[DevelopedLayer],
-        tone_map: &ToneMap,
-        exposure: f32,
-    ) -> Result<(), ImageError> {
+        picture: &Picture,
+        display: &DisplayArgs,
+        film: &dyn Fn(&Path) -> Result<(), String>,
+    ) -> Result<(), String> {
         match self.kind {
             Kind::Exr => {
-                let picture = Layer { name: "", data: LayerData::Rgb(image) };
-                with_layers(picture, layers, |all| write_exr(&self.path, all))
+                let first = Layer { name: "", data: LayerData::Rgb(&picture.image) };
+                with_layers(first, &picture.layers, |all| write_exr(&self.path, all))
+                    .map_err(|e| e.to_string())
             }
-            Kind::Png => write_png(&self.path, &tone_map.apply(image, exposure)),
+            Kind::Png => {
+                let shown = display.tonemap.apply(&picture.image, display.exposure);
+                write_png(&self.path, &shown).map_err(|e| e.to_string())
+            }
+            Kind::Film => film(&self.path),
         }
     }
 }
@@ -77,15 +84,18 @@ fn usage(path: &Path, message: &str) -> Failure {
     Failure::Usage(format!("{}: {message}", path.display()))
 }
 
-/// The files that `-o` names, or `NAME.exr` and `NAME.png` in the current folder; each could be
-/// written now.
-pub fn outputs(named: &[PathBuf], name: &OsStr) -> Result<Vec<Output>, Failure> {
-    let default = [".exr", ".png"].map(|suffix| {
+/// What is written where no output is named: `NAME.exr` and `NAME.png`.
+pub fn default_names(name: &OsStr) -> Vec<PathBuf> {
+    let with = |suffix| {
         let mut file = name.to_owned();
         file.push(suffix);
         PathBuf::from(file)
-    });
-    let named = if named.is_empty() { &default } else { named };
+    };
+    [".exr", ".png"].map(with).to_vec()
+}
+
+/// The files of these names; each could be written now.
+pub fn outputs(named: &[PathBuf]) -> Result<Vec<Output>, Failure> {
     let outputs = named.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
     for (i, output) in outputs.iter().enumerate() {
         if outputs[..i].contains(output) {
@@ -96,16 +106,23 @@ pub fn outputs(named: &[PathBuf], name: &OsStr) -> Result<Vec<Output>, Failure> 
     Ok(outputs)
 }
 
-/// Writes a picture to each file, with its further layers where they fit. One that cannot be written keeps no other from being.
+/// A picture with its further layers.
+pub struct Picture {
+    /// Radiance.
+    pub image: Image,
+    /// What is written where layers fit.
+    pub layers: Vec<DevelopedLayer>,
+}
+
+/// Writes a picture to each file; `film` writes the sums it is made of. One that cannot be written keeps no other from being.
 pub fn write_all(
     outputs: &[Output],
-    image: &Image,
-    layers: &[DevelopedLayer],
-    tone_map: &ToneMap,
-    exposure: f32,
+    picture: &Picture,
+    display: &DisplayArgs,
+    film: &dyn Fn(&Path) -> Result<(), String>,
 ) -> Result<(), Failure> {
-    let write = |o: &Output| o.write(image, layers, tone_map, exposure).err().map(|e| e.to_string());
-    let errors: Vec<String> = outputs.iter().filter_map(write).collect();
+    let errors = outputs.iter().filter_map(|o| o.write(picture, display, film).err());
+    let errors: Vec<String> = errors.collect();
     if errors.is_empty() { Ok(()) } else { Err(Failure::File(errors.join("\nerror: "))) }
 }
 

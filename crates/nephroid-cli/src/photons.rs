@@ -18,10 +18,10 @@ use crate::exit::{Exit, Failure};
 use crate::lab_args::PhotonsArgs;
 use crate::load;
 use crate::method::{self, Integrator};
+use crate::numbers::grouped;
 use crate::plan::Plan;
 use crate::progress::{self, Watch};
 use crate::render;
-use crate::report::grouped;
 
 /// What photons can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +51,8 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
     }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
-    let watch =
-        Watch::new(!args.run.quiet && std::io::stderr().is_terminal(), None, None, progress::listen()?);
+    let visible = !args.run.quiet && std::io::stderr().is_terminal();
+    let watch = Watch::new(visible, None, progress::listen()?);
     let (written, legend) = render::pool(args.run.threads)?.install(|| {
         let world = load::world(file.scene, &file.origins)?;
         let samples_per_pixel = plan.samples_per_pass;

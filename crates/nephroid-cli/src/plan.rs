@@ -1,6 +1,10 @@
 //! How a render is cut into passes, and when it is done.
 
+use serde_json::{Value, json};
+
 use crate::args::LimitArgs;
+use crate::exit::Failure;
+use crate::session_args::PassRange;
 
 /// Samples of a pixel where neither the scene nor the command line says.
 const SAMPLES_PER_PIXEL: u32 = 16;
@@ -8,7 +12,7 @@ const SAMPLES_PER_PIXEL: u32 = 16;
 /// How much to render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Camera samples of each pixel in a pass.
+    /// Camera samples of each pixel in a pass, where the integrator does not decide that itself.
     pub samples_per_pass: u32,
     /// Camera samples of each pixel after which to stop.
     pub samples: Option<u64>,
@@ -16,6 +20,8 @@ pub struct Plan {
     pub passes: Option<u64>,
     /// Seconds after which to stop.
     pub seconds: Option<f64>,
+    /// The passes to render, if not all of them.
+    pub range: Option<PassRange>,
 }
 
 impl Plan {
@@ -37,16 +43,101 @@ impl Plan {
             samples: samples.map(u64::from),
             passes: limits.passes,
             seconds: limits.time,
+            range: None,
         }
     }
 
-    /// Camera samples of each pixel when all is done, if that is known beforehand.
-    pub fn total_samples(&self) -> Option<u64> {
-        let by_passes = self.passes.map(|n| n.saturating_mul(u64::from(self.samples_per_pass)));
-        match (self.samples, by_passes) {
+    /// A part of it, which `--passes` and `--spp` then describe the whole of.
+    pub fn part(self, limits: &LimitArgs, range: Option<PassRange>) -> Result<Self, Failure> {
+        let Some(range) = range else { return Ok(self) };
+        let refuse = |message: String| Err(Failure::Usage(format!("--pass-range: {message}")));
+        match (limits.spp, limits.passes) {
+            (Some(_), None) => {
+                refuse("with --spp, say with --passes how many passes share the samples".to_owned())
+            }
+            (_, Some(passes)) if range.end > passes => {
+                refuse(format!("the whole render has --passes {passes}, numbered from 0"))
+            }
+            // The scene's sample_count is how many samples a pass has, and no limit.
+            _ => Ok(Self { samples: limits.spp.map(u64::from), range: Some(range), ..self }),
+        }
+    }
+
+    /// Goes on with what was interrupted after `spent` seconds: with other limits where they are given. Those of counts
+    /// replace all others; time counts anew.
+    pub fn resumed(self, limits: &LimitArgs, spent: f64) -> Result<Self, Failure> {
+        let counts = limits.spp.is_some() || limits.passes.is_some();
+        if let (true, Some(range)) = (counts, self.range) {
+            return Err(Failure::Usage(format!(
+                "this is a part of a render, passes {} to {}: --passes and --spp cannot change that",
+                range.begin,
+                range.end - 1
+            )));
+        }
+        let mut plan = self;
+        if counts {
+            (plan.samples, plan.passes, plan.seconds) = (limits.spp.map(u64::from), limits.passes, None);
+        }
+        if let Some(seconds) = limits.time {
+            plan.seconds = Some(spent + seconds);
+        }
+        Ok(plan)
+    }
+
+    /// The whole that it is a part of, or what is there of it if nobody said how much that is.
+    pub fn whole(self, passes: u64) -> Self {
+        let passes = self.passes.or(self.samples.is_none().then_some(passes));
+        Self { passes, seconds: None, range: None, ..self }
+    }
+
+    /// The number of the first sample of each pixel, where a pass has so many.
+    pub fn first_sample(&self, per_pass: u32) -> u64 {
+        self.range.map_or(0, |range| range.begin.saturating_mul(u64::from(per_pass)))
+    }
+
+    /// The number of the sample before which it is done, if that is known beforehand.
+    pub fn end(&self, per_pass: u32) -> Option<u64> {
+        let passes = self.range.map(|range| range.end).or(self.passes);
+        let by_passes = passes.map(|n| n.saturating_mul(u64::from(per_pass)));
+        match (self.samples.filter(|_| self.range.is_none()), by_passes) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         }
+    }
+
+    /// One object.
+    pub fn to_json(self) -> Value {
+        json!({
+            "samples_per_pass": self.samples_per_pass,
+            "samples_per_pixel": self.samples,
+            "passes": self.passes,
+            "seconds": self.seconds,
+            "pass_range": self.range.map(|range| [range.begin, range.end]),
+        })
+    }
+
+    /// The plan of an object; none if it is not one.
+    pub fn from_json(value: &Value) -> Option<Self> {
+        let count = |name: &str| match &value[name] {
+            Value::Null => Some(None),
+            number => number.as_u64().map(Some),
+        };
+        Some(Self {
+            samples_per_pass: u32::try_from(value["samples_per_pass"].as_u64()?).ok()?,
+            samples: count("samples_per_pixel")?,
+            passes: count("passes")?,
+            seconds: match &value["seconds"] {
+                Value::Null => None,
+                seconds => Some(seconds.as_f64().filter(|s| (0.0..1e12).contains(s))?),
+            },
+            range: match &value["pass_range"] {
+                Value::Null => None,
+                range => {
+                    let (begin, end) = (range[0].as_u64()?, range[1].as_u64()?);
+                    (begin < end).then_some(Some(PassRange { begin, end }))?
+                }
+            },
+        })
     }
 }
 
@@ -56,7 +147,7 @@ mod tests {
 
     fn plan(spp: Option<u32>, passes: Option<u64>, time: Option<f64>) -> (u32, Option<u64>) {
         let plan = Plan::new(&LimitArgs { spp, passes, time }, Some(16));
-        (plan.samples_per_pass, plan.total_samples())
+        (plan.samples_per_pass, plan.end(plan.samples_per_pass))
     }
 
     #[test]
@@ -66,7 +157,7 @@ mod tests {
         assert_eq!(plan(None, Some(5), None), (16, Some(80)));
         assert_eq!(plan(None, None, Some(1.0)), (16, None));
         assert_eq!(plan(Some(40), None, Some(1.0)), (40, Some(40)));
-        assert_eq!(Plan::new(&LimitArgs::default(), None).total_samples(), Some(16));
+        assert_eq!(Plan::new(&LimitArgs::default(), None).end(16), Some(16));
     }
 
     #[test]
@@ -74,5 +165,43 @@ mod tests {
         assert_eq!(plan(Some(16), Some(4), None), (4, Some(16)));
         assert_eq!(plan(Some(17), Some(4), None), (4, Some(16)));
         assert_eq!(plan(Some(2), Some(4), None), (1, Some(2)));
+    }
+
+    #[test]
+    fn a_part_is_one_of_the_whole() {
+        let part = |spp, passes, range: (u64, u64)| {
+            let limits = LimitArgs { spp, passes, time: None };
+            let range = Some(PassRange { begin: range.0, end: range.1 });
+            Plan::new(&limits, Some(16)).part(&limits, range).ok().map(|plan| {
+                let n = plan.samples_per_pass;
+                (n, plan.first_sample(n), plan.end(n))
+            })
+        };
+        assert_eq!(part(None, None, (3, 5)), Some((16, 48, Some(80))));
+        assert_eq!(part(Some(64), Some(8), (7, 8)), Some((8, 56, Some(64))));
+        assert_eq!(part(None, Some(8), (7, 9)), None);
+        assert_eq!(part(Some(64), None, (0, 1)), None);
+        let plan = Plan::new(&LimitArgs::default(), Some(16));
+        let range = Some(PassRange { begin: 3, end: 5 });
+        let whole = plan.part(&LimitArgs::default(), range).unwrap().whole(7);
+        assert_eq!((whole.first_sample(16), whole.end(16)), (0, Some(112)));
+        let limits = LimitArgs { passes: Some(9), ..LimitArgs::default() };
+        let whole = Plan::new(&limits, Some(16)).part(&limits, range).unwrap().whole(7);
+        assert_eq!(whole.end(16), Some(144));
+    }
+
+    #[test]
+    fn new_limits_replace_old_ones() {
+        let old = Plan::new(&LimitArgs { spp: None, passes: Some(4), time: Some(10.0) }, Some(16));
+        let resumed = |spp, passes, time| {
+            let plan = old.resumed(&LimitArgs { spp, passes, time }, 7.0).unwrap();
+            (plan.samples, plan.passes, plan.seconds)
+        };
+        assert_eq!(resumed(None, None, None), (None, Some(4), Some(10.0)));
+        assert_eq!(resumed(None, None, Some(5.0)), (None, Some(4), Some(12.0)));
+        assert_eq!(resumed(None, Some(9), None), (None, Some(9), None));
+        assert_eq!(resumed(Some(100), None, Some(1.0)), (Some(100), None, Some(8.0)));
+        let part = Plan { range: Some(PassRange { begin: 0, end: 2 }), ..old };
+        assert!(part.resumed(&LimitArgs { passes: Some(9), ..LimitArgs::default() }, 0.0).is_err());
     }
 }

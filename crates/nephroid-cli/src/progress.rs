@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use nephroid::observer::{Observer, Phase};
 
 use crate::exit::{Exit, Failure};
@@ -43,9 +43,11 @@ pub struct Watch {
     /// Whether a picture has been begun: there is nothing to stop with before.
     may_stop: AtomicBool,
     interrupted: Arc<AtomicBool>,
-    /// Camera samples of all passes, if known, and those of the steps before this one.
-    total_samples: Option<u64>,
+    /// Camera samples of this run, none if unknown, and those of the steps before this one.
+    total_samples: AtomicU64,
     samples_before: AtomicU64,
+    /// When the first photons or samples were begun.
+    planned: Arc<OnceLock<Instant>>,
     now: Mutex<Now>,
 }
 
@@ -54,19 +56,16 @@ struct Now {
     phase: Option<(Phase, Instant)>,
     times: PhaseTimes,
     samples_of_step: u64,
+    /// What was last said beside the pass.
+    more: Option<String>,
 }
 
 /// The share of the time limit that a step may overrun to finish, and within which none is begun.
 const GRACE: f64 = 0.03;
 
 impl Watch {
-    /// The render begins now. `limit` is in seconds; `total_samples` counts those of all pixels.
-    pub fn new(
-        visible: bool,
-        limit: Option<f64>,
-        total_samples: Option<u64>,
-        interrupted: Arc<AtomicBool>,
-    ) -> Self {
+    /// The render begins now. `limit` is in seconds.
+    pub fn new(visible: bool, limit: Option<f64>, interrupted: Arc<AtomicBool>) -> Self {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         Self {
             bar: ProgressBar::with_draw_target(None, target),
@@ -74,10 +73,37 @@ impl Watch {
             limit: limit.map(Duration::from_secs_f64),
             may_stop: AtomicBool::new(false),
             interrupted,
-            total_samples,
+            total_samples: AtomicU64::new(0),
             samples_before: AtomicU64::new(0),
+            planned: Arc::default(),
             now: Mutex::default(),
         }
+    }
+
+    /// How many samples of all pixels together this run will take, if that is known.
+    pub fn expect(&self, samples: Option<u64>) {
+        self.total_samples.store(samples.unwrap_or(0), Ordering::Relaxed);
+    }
+
+    /// Whether anybody sees the display.
+    pub fn is_visible(&self) -> bool {
+        !self.bar.is_hidden()
+    }
+
+    /// Shows how far the render is, and what else there is to say, or what there was last.
+    pub fn tell(&self, text: String, more: Option<String>) {
+        if !self.is_visible() {
+            return;
+        }
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        now.more = more.or(now.more.take());
+        let more = now.more.as_ref().map_or(String::new(), |more| format!(", {more}"));
+        self.bar.set_message(format!("{text}{more}"));
+    }
+
+    /// Prints something while the display is out of the way.
+    pub fn aside(&self, print: impl FnOnce()) {
+        self.bar.suspend(print);
     }
 
     /// From the start of the render.
@@ -120,6 +146,9 @@ impl Now {
 
 impl Observer for Watch {
     fn begin(&self, phase: Phase, work: u64) {
+        if phase != Phase::Pilot {
+            self.planned.get_or_init(Instant::now);
+        }
         self.may_stop.fetch_or(phase == Phase::Camera, Ordering::Relaxed);
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         let last = now.phase.map(|(phase, _)| phase);
@@ -132,12 +161,10 @@ impl Observer for Watch {
                 return;
             }
         }
-        let length = match (phase, self.total_samples) {
-            (Phase::Camera, Some(total)) => total,
-            _ => work,
-        };
+        let total = self.total_samples.load(Ordering::Relaxed);
+        let length = if phase == Phase::Camera && total > 0 { total } else { work };
         self.bar.reset();
-        self.bar.set_style(style(phase));
+        self.bar.set_style(self.style(phase));
         self.bar.set_length(length.max(1));
     }
 
@@ -151,21 +178,38 @@ impl Observer for Watch {
     }
 }
 
-fn style(phase: Phase) -> ProgressStyle {
-    let name = match phase {
-        Phase::Pilot => "pilot",
-        Phase::Photons => "photons",
-        Phase::Maps => "maps",
-        Phase::Camera => "picture",
-    };
-    let template = format!("{name:8} [{{bar:40}}] {{percent:>3}} %  {{rate}}  {{eta}} left");
-    ProgressStyle::with_template(&template)
-        .unwrap_or_else(|_| ProgressStyle::default_bar())
-        .with_key("rate", |state: &ProgressState, out: &mut dyn Write| {
+impl Watch {
+    fn style(&self, phase: Phase) -> ProgressStyle {
+        let name = match phase {
+            Phase::Pilot => "pilot",
+            Phase::Photons => "photons",
+            Phase::Maps => "maps",
+            Phase::Camera => "picture",
+        };
+        let total = self.total_samples.load(Ordering::Relaxed);
+        let (planned, limit, begun) = (Arc::clone(&self.planned), self.limit, self.begun);
+        let left = move |state: &ProgressState, out: &mut dyn Write| {
+            // Photons are part of a pass: the time of the samples so far counts them in.
+            let since = planned.get().map_or(0.0, |since| since.elapsed().as_secs_f64());
+            let by_samples = (phase == Phase::Camera && total > 0 && state.pos() > 0)
+                .then(|| since * (total.saturating_sub(state.pos())) as f64 / state.pos() as f64);
+            let by_time = limit.map(|limit| limit.saturating_sub(begun.elapsed()).as_secs_f64());
+            let left = by_samples.into_iter().chain(by_time).reduce(f64::min);
             // A line that cannot be formatted is not shown.
-            let _ = write!(out, "{:>8}/s", rate(state.per_sec()));
-        })
-        .progress_chars("=> ")
+            let _ = match left {
+                Some(left) => write!(out, "{} left", HumanDuration(Duration::from_secs_f64(left.min(1e9)))),
+                None => Ok(()),
+            };
+        };
+        let template = format!("{name:8} [{{bar:30}}] {{percent:>3}} %  {{rate}}  {{msg}}  {{left}}");
+        ProgressStyle::with_template(&template)
+            .unwrap_or_else(|_| ProgressStyle::default_bar())
+            .with_key("rate", |state: &ProgressState, out: &mut dyn Write| {
+                let _ = write!(out, "{:>8}/s", rate(state.per_sec()));
+            })
+            .with_key("left", left)
+            .progress_chars("=> ")
+    }
 }
 
 /// Three digits and a prefix.
@@ -200,7 +244,7 @@ mod tests {
     use super::*;
 
     fn watch(limit: Option<f64>) -> Watch {
-        Watch::new(false, limit, None, Arc::default())
+        Watch::new(false, limit, Arc::default())
     }
 
     #[test]

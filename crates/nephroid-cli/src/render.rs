@@ -1,103 +1,115 @@
 //! `nephroid render`: from a scene to pictures.
 
 use std::ffi::OsString;
-use std::path::Path;
-use std::time::{Duration, Instant};
-
-use nephroid::film::Film;
-use nephroid::integrator::{LightTracerConfig, Method};
-use nephroid::session::{RenderSettings, Session, Statistics};
-use nephroid::world::World;
-use nephroid_formats::diagnostic::Diagnostic;
-use nephroid_formats::image::MAX_PIXELS;
-use nephroid_formats::mitsuba::SceneFile;
 use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use crate::args::RenderArgs;
+use nephroid::session::RenderSettings;
+use nephroid_formats::film_file::identity_differences;
+use nephroid_formats::image::{MAX_PIXELS, check_writable};
+use nephroid_formats::mitsuba::SceneFile;
+
+use crate::args::{LimitArgs, RenderArgs};
 use crate::builtin;
+use crate::checkpoint::Checkpoint;
 use crate::console::{self, Messages};
 use crate::exit::{Exit, Failure};
-use crate::layers::{self, DevelopedLayer, LayerPlan};
+use crate::films::{self, Begun};
+use crate::identity;
+use crate::job::Order;
+use crate::layers;
 use crate::load;
 use crate::method;
-use crate::output::{self, Output};
+use crate::output::{self, Kind, Output, Picture};
 use crate::plan::Plan;
-use crate::progress::{self, PhaseTimes, Watch};
+use crate::preview::Previews;
+use crate::rendering::{self, Companions, Ended, Rendered, Task};
 use crate::report::Report;
-
-/// What became of a render.
-pub struct Rendered {
-    /// The picture's sums.
-    pub film: Film,
-    /// What was done.
-    pub statistics: Statistics,
-    /// Names of the lights, in the order of the ledger.
-    pub lights: Vec<String>,
-    /// Whether any of them has power.
-    pub has_light: bool,
-    /// Whether there are mirrors or glass that the integrator sees nothing in.
-    pub blind_to_specular: bool,
-    /// Why it ended.
-    pub ended: Ended,
-    /// How long the phases took.
-    pub phases: PhaseTimes,
-    /// How long it took to prepare the world.
-    pub preparing: Duration,
-    /// How long it took to render, from the pilot to the last sample.
-    pub rendering: Duration,
-    /// What of the scene may not be meant so.
-    pub remarks: Vec<Diagnostic>,
-    /// Further layers of the picture.
-    pub layers: Vec<DevelopedLayer>,
-    /// Threads that worked on it.
-    pub threads: usize,
-}
-
-/// Why a render ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
-    /// All passes or samples are done.
-    Finished,
-    /// The time is up.
-    TimeIsUp,
-    /// Ctrl-C.
-    Interrupted,
-}
 
 /// Renders a scene.
 pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
+    let default = if args.outputs.is_empty() { output::default_names(&name(args)) } else { Vec::new() };
+    go(args, &[args.outputs.as_slice(), &default].concat(), None)
+}
+
+/// What the pictures of a render are called.
+pub fn name(args: &RenderArgs) -> OsString {
+    args.scene.as_ref().map_or_else(|| OsString::from("nephroid"), |scene| load::name(scene))
+}
+
+/// Renders what the flags say into other outputs: from the start, or on with what was begun, to other limits if there are
+/// any.
+pub fn go(
+    args: &RenderArgs,
+    outputs: &[PathBuf],
+    resumed: Option<(Begun, &LimitArgs)>,
+) -> Result<Exit, Failure> {
     let mut messages = Messages::new(args.quiet);
-    let (scene, name) = match &args.scene {
-        Some(scene) => (scene.as_path(), load::name(scene)),
-        None => (Path::new(builtin::DEFAULT), OsString::from("nephroid")),
-    };
-    let outputs = output::outputs(&args.outputs, &name)?;
+    let scene = args.scene.as_deref().unwrap_or(Path::new(builtin::DEFAULT));
+    let outputs = output::outputs(outputs)?;
+    let checkpoint = args.session.checkpoint.as_deref();
+    if let Some(path) = checkpoint {
+        check_checkpoint(path, &outputs)?;
+    }
+    let mut previews = Previews::new(&args.watch, &name(args).to_string_lossy(), &args.display)?;
     let clock = Instant::now();
-    let mut file = load::load(scene, &args.reading)?;
+    let (mut file, files) = load::load_recorded(scene, &args.reading)?;
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
     let method = method::choose(args.integrator, &file, &args.photons, &mut messages)?;
     resize(&mut file, args.resolution, &mut messages)?;
-    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, &outputs, &mut messages)?;
-    let plan = Plan::new(&args.limits, file.sample_count);
+    let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
+    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps_layers, &mut messages)?;
+    let plan = match &resumed {
+        Some((begun, limits)) => begun.job.limits.resumed(limits, begun.job.spent)?,
+        None => Plan::new(&args.limits, file.sample_count).part(&args.limits, args.session.pass_range)?,
+    };
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
+    let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
+    let begun = resumed.map(|(begun, _)| begun);
+    let order = match &begun {
+        Some(begun) => {
+            check_same(begun, &identity)?;
+            begun.job.order()
+        }
+        None => {
+            let paths: Vec<PathBuf> = outputs.iter().map(|output| output.path.clone()).collect();
+            Order::of_this_process(scene, &paths)?
+        }
+    };
+    let kept = begun.as_ref().map(|begun| begun.covered.end);
+    let mut checkpoint = checkpoint.map(|path| Checkpoint::new(path, args.session.checkpoint_every, kept));
+    if let (Some(checkpoint), None) = (&checkpoint, &begun) {
+        films::refuse_to_replace(checkpoint.path(), &identity)?;
+    }
     let reading = clock.elapsed();
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
+    let task = Task { settings: settings.clone(), plan, layers, identity, order, begun, visible };
 
-    let rendered = pool(args.threads)?.install(|| render(file, &settings, &plan, &layers, visible))?;
+    let companions =
+        Companions { checkpoint: checkpoint.as_mut(), previews: &mut previews, messages: &mut messages };
+    let rendered = pool(args.threads)?.install(|| rendering::render(file, task, companions))?;
 
     for remark in &rendered.remarks {
         messages.diagnostic(remark);
     }
     let writing = Instant::now();
-    let outputs = write(&rendered, &outputs, args)?;
+    let written = write(&rendered, &outputs, args);
+    let unkept = checkpoint.as_ref().and_then(|c| c.trouble().map(str::to_owned));
+    let outputs = match (written, unkept) {
+        (Ok(outputs), None) => outputs,
+        (Ok(_), Some(trouble)) => return Err(Failure::File(trouble)),
+        (Err(failure), _) => return Err(failure),
+    };
     let report = Report {
         scene: &scene.display().to_string(),
         settings: &settings,
         plan: &plan,
         rendered: &rendered,
         outputs: &outputs,
+        checkpoint: checkpoint.as_ref(),
         reading,
         writing: writing.elapsed(),
     };
@@ -108,6 +120,28 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Failure> {
         console::say(report.text().trim_end());
     }
     Ok(if rendered.ended == Ended::Interrupted { Exit::Stopped } else { Exit::Done })
+}
+
+/// A checkpoint could be written, and is nothing else that is.
+fn check_checkpoint(path: &Path, outputs: &[Output]) -> Result<(), Failure> {
+    if outputs.iter().any(|output| output.path == path) {
+        let name = path.display();
+        return Err(Failure::Usage(format!("{name}: is to be written twice, as the checkpoint and with -o")));
+    }
+    check_writable(path).map_err(|e| Failure::File(e.to_string()))
+}
+
+/// What was begun is still the same render.
+fn check_same(begun: &Begun, identity: &identity::Identity) -> Result<(), Failure> {
+    let (name, then) = (begun.path.display().to_string(), identity::without_plan(&begun.identity));
+    let differences = identity_differences((&name, &then), ("the render now", identity));
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let differences = differences.join("; ");
+    Err(Failure::File(format!(
+        "{name}: cannot be gone on with, for it has changed since what it is of: {differences}"
+    )))
 }
 
 /// So many threads, or one for each core.
@@ -139,70 +173,16 @@ pub fn resize(
     Ok(())
 }
 
-fn render(
-    file: SceneFile,
-    settings: &RenderSettings,
-    plan: &Plan,
-    layers: &[LayerPlan],
-    visible: bool,
-) -> Result<Rendered, Failure> {
-    let clock = Instant::now();
-    let SceneFile { scene, origins, .. } = file;
-    let world = load::world(scene, &origins)?;
-    let preparing = clock.elapsed();
-    let window = world.scene().film.window();
-    let pixels = u64::from(window.width) * u64::from(window.height);
-    let total = plan.total_samples().map(|n| n.saturating_mul(pixels));
-    let watch = Watch::new(visible, plan.seconds, total, progress::listen()?);
-    let aovs: Vec<_> = layers.iter().map(|layer| layer.aov).collect();
-    let mut session = Session::new(&world, settings.clone(), &watch).with_aovs(&aovs);
-    let ended = step_to_the_end(&mut session, plan, &watch);
-    let (film, further) = session.picture();
-    Ok(Rendered {
-        film,
-        statistics: session.statistics().clone(),
-        remarks: load::remarks(&world, &origins),
-        layers: layers::develop(layers, further.as_ref()),
-        lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
-        has_light: has_light(&world),
-        blind_to_specular: matches!(settings.method, Method::LightTracer(_))
-            && LightTracerConfig::misses(&world),
-        ended,
-        rendering: watch.elapsed(),
-        phases: watch.finish(),
-        preparing,
-        threads: rayon::current_num_threads(),
-    })
-}
-
-fn step_to_the_end(session: &mut Session<'_>, plan: &Plan, watch: &Watch) -> Ended {
-    loop {
-        if !session.step(watch) {
-            return if watch.interrupted() { Ended::Interrupted } else { Ended::TimeIsUp };
-        }
-        let statistics = session.statistics();
-        let passes = statistics.iterations - u64::from(!session.iteration_is_complete());
-        let enough = plan.samples.is_some_and(|n| statistics.samples_per_pixel >= n)
-            || plan.passes.is_some_and(|n| passes >= n);
-        if enough {
-            return Ended::Finished;
-        }
-        if watch.time_is_up() {
-            return Ended::TimeIsUp;
-        }
-    }
-}
-
-fn has_light(world: &World) -> bool {
-    world.lights().any(|(_, power)| power.max_channel() > 0.0)
-}
-
-/// Writes what there is; nothing if not a single sample is.
+/// Writes what there is; nothing if not a single sample is, and no film if there are not the first of every pixel.
 fn write(rendered: &Rendered, outputs: &[Output], args: &RenderArgs) -> Result<Vec<Output>, Failure> {
-    if rendered.film.iterations() == 0 {
+    if rendered.picture.0.iterations() == 0 {
         return Ok(Vec::new());
     }
-    let image = rendered.film.develop();
-    output::write_all(outputs, &image, &rendered.layers, &args.display.tonemap, args.display.exposure)?;
-    Ok(outputs.to_vec())
+    let outputs: Vec<Output> =
+        outputs.iter().filter(|o| o.kind != Kind::Film || rendered.has_film()).cloned().collect();
+    let (film, further) = &rendered.picture;
+    let layers = layers::develop(&rendered.job.layers, further.as_ref());
+    let picture = Picture { image: film.develop(), layers };
+    output::write_all(&outputs, &picture, &args.display, &|path| rendered.write_film(path))?;
+    Ok(outputs)
 }

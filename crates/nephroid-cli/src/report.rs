@@ -8,12 +8,16 @@ use nephroid::session::{MapStatistics, RenderSettings};
 use nephroid::transport::{Balance, MapPlan, VolumeKind};
 use serde_json::{Value, json};
 
+use crate::checkpoint::Checkpoint;
 use crate::console::Messages;
-use crate::layers::DevelopedLayer;
+use crate::films;
+use crate::layers::LayerPlan;
 use crate::method;
-use crate::output::Output;
+use crate::noise;
+use crate::numbers::{grouped, plural, power};
+use crate::output::{Kind, Output};
 use crate::plan::Plan;
-use crate::render::{Ended, Rendered};
+use crate::rendering::{Ended, Rendered};
 
 /// A render and its circumstances.
 pub struct Report<'a> {
@@ -27,6 +31,8 @@ pub struct Report<'a> {
     pub rendered: &'a Rendered,
     /// The files that were written.
     pub outputs: &'a [Output],
+    /// Where it is kept.
+    pub checkpoint: Option<&'a Checkpoint>,
     /// How long it took to read the scene.
     pub reading: Duration,
     /// How long it took to write the pictures.
@@ -119,10 +125,11 @@ impl Report<'_> {
         if rendered.blind_to_specular {
             messages.warning("what is seen in mirrors and through glass is left out by ptracer");
         }
-        if rendered.film.iterations() > 0 && rendered.statistics.samples_per_pixel == 0 {
+        let (film, _) = &rendered.picture;
+        if film.iterations() > 0 && !rendered.has_film() {
             messages.warning("stopped before every pixel had a sample: the rest of the picture is black");
         }
-        for map in self.maps().iter().filter(|map| map.plan.limited) {
+        for map in self.maps().iter().filter(|map| map.plan.limited && map.numbers.paths > 0) {
             let (name, paths) = (map.name, grouped(map.numbers.paths));
             if map.numbers.photons == 0 {
                 messages.note(&format!("the {name} map is empty: none of {paths} paths leads there"));
@@ -147,7 +154,7 @@ impl Report<'_> {
                 ));
             }
         }
-        let counts = rendered.film.counts();
+        let counts = film.counts();
         if counts.non_finite > 0 {
             messages.warning(&format!(
                 "{} estimates of pixels were not finite and are left out; please report this",
@@ -157,7 +164,7 @@ impl Report<'_> {
         if counts.saturated > 0 {
             messages.warning(&format!("{} values were too large and are cut down", counts.saturated));
         }
-        if let Some(limit) = self.plan.seconds {
+        if let Some(limit) = rendered.limit.filter(|limit| *limit > 0.0) {
             let took = rendered.rendering.as_secs_f64();
             if took > 1.05 * limit {
                 messages.warning(&format!(
@@ -165,8 +172,16 @@ impl Report<'_> {
                 ));
             }
         }
-        if rendered.film.iterations() == 0 {
+        if film.iterations() == 0 {
             messages.warning("stopped before the first samples were complete: no picture is written");
+        } else if self.plan.range.is_some() && self.outputs.iter().any(|o| o.kind != Kind::Film) {
+            let part = films::passes(std::slice::from_ref(&rendered.covered), rendered.samples_per_pass());
+            messages.note(&format!("the pictures show a part of the render only: {part}"));
+        }
+        if rendered.statistics.samples_per_pixel == 0 && rendered.has_film() {
+            let more =
+                if self.plan.range.is_some() { "" } else { ": for more, say --passes, --spp or --time" };
+            messages.note(&format!("everything was rendered before{more}"));
         }
     }
 
@@ -186,12 +201,16 @@ impl Report<'_> {
             out,
             "{}: {} by {} pixels, {} samples each, {method} with {}, {}{ended}",
             self.scene,
-            r.film.width(),
-            r.film.height(),
-            s.samples_per_pixel,
+            r.picture.0.width(),
+            r.picture.0.height(),
+            r.samples(),
             plural(r.threads as u64, "thread"),
             plural(s.iterations, "pass"),
         );
+        if r.samples() != s.samples_per_pixel || self.plan.range.is_some() {
+            let part = films::passes(std::slice::from_ref(&r.covered), r.samples_per_pass());
+            let _ = writeln!(out, "the picture has {part}; of this run: {} samples", s.samples_per_pixel);
+        }
         for map in self.maps() {
             let bytes = map.bytes_per_photon().map_or(String::new(), |b| format!(", {b:.0} bytes each"));
             let _ = writeln!(
@@ -213,7 +232,13 @@ impl Report<'_> {
         if let Some(share) = self.share_of_media() {
             let _ = writeln!(out, "light from media: {:.2} % of all", 100.0 * share);
         }
-        let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr)", r.film.mean_luminance());
+        let noise = r.noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
+        let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr){noise}", r.picture.0.mean_luminance());
+        if let Some(checkpoint) = self.checkpoint {
+            let (path, n) = (checkpoint.path().display(), checkpoint.written);
+            let _ =
+                writeln!(out, "kept: {path}, written {n} times in {:.2} s", checkpoint.spent.as_secs_f64());
+        }
         if !self.outputs.is_empty() {
             let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
             let _ = writeln!(out, "written: {}", names.join(", "));
@@ -274,20 +299,22 @@ impl Report<'_> {
             self.maps().iter().map(|map| (map.name.to_owned(), map.json())).collect();
         let seconds: serde_json::Map<_, _> =
             self.seconds().into_iter().map(|(name, s)| (name.to_owned(), json!(s))).collect();
-        let image = r.film.develop();
+        let (film, _) = &r.picture;
+        let image = film.develop();
         let outputs: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
         json!({
             "version": env!("CARGO_PKG_VERSION"),
             "scene": self.scene,
             "integrator": method::describe(&self.settings.method),
-            "width": r.film.width(),
-            "height": r.film.height(),
+            "width": film.width(),
+            "height": film.height(),
             "seed": self.settings.seed,
             "threads": r.threads,
             "limits": {
                 "samples_per_pixel": self.plan.samples,
                 "passes": self.plan.passes,
                 "seconds": self.plan.seconds,
+                "pass_range": self.plan.range.map(|range| [range.begin, range.end]),
             },
             "ended": match r.ended {
                 Ended::Finished => "finished",
@@ -296,16 +323,24 @@ impl Report<'_> {
             },
             "passes": s.iterations,
             "samples_per_pass": s.plan.camera.samples_per_pixel,
-            "samples_per_pixel": s.samples_per_pixel,
+            "samples_per_pixel": r.samples(),
+            "passes_done": r.passes_done(),
+            "covered": if r.has_film() { vec![[r.covered.start, r.covered.end]] } else { Vec::new() },
+            "noise": r.noise,
+            "checkpoint": self.checkpoint.map(|checkpoint| json!({
+                "file": checkpoint.path().display().to_string(),
+                "written": checkpoint.written,
+                "seconds": checkpoint.spent.as_secs_f64(),
+            })),
             "camera_samples": s.picture.samples,
             "seconds": seconds,
             "photons": maps,
             "ledger": self.balances().map(balance_json).collect::<Vec<_>>(),
             "image": {
                 "mean": image.mean().to_array(),
-                "mean_luminance": r.film.mean_luminance(),
-                "non_finite": r.film.counts().non_finite,
-                "saturated": r.film.counts().saturated,
+                "mean_luminance": film.mean_luminance(),
+                "non_finite": film.counts().non_finite,
+                "saturated": film.counts().saturated,
             },
             "light": {
                 "emitted": picture(s.picture.emitted),
@@ -316,7 +351,7 @@ impl Report<'_> {
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
             "outputs": outputs,
-            "layers": r.layers.iter().map(DevelopedLayer::name).collect::<Vec<_>>(),
+            "layers": r.job.layers.iter().map(LayerPlan::name).collect::<Vec<_>>(),
             "messages": warnings,
         })
     }
@@ -334,50 +369,4 @@ fn balance_json((light, balance): (&str, &Balance)) -> Value {
         "imbalance": balance.imbalance(),
         "roulette_sigmas": balance.roulette_z(),
     })
-}
-
-/// Digits in groups of three.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
-/// Six digits, and zero as zero.
-fn power(watts: f64) -> String {
-    match watts.abs() {
-        0.0 => "0".to_owned(),
-        size if (1e-3..1e6).contains(&size) => format!("{watts:.6}").chars().take(9).collect(),
-        _ => format!("{watts:.3e}"),
-    }
-}
-
-/// A number of things.
-pub fn plural(n: u64, noun: &str) -> String {
-    match (n, noun) {
-        (1, _) => format!("1 {noun}"),
-        (_, "pass") => format!("{n} passes"),
-        _ => format!("{n} {noun}s"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_easy_to_read() {
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
-        assert_eq!([0.0, 12.5, -1e-9].map(power), ["0", "12.500000", "-1.000e-9"]);
-        assert_eq!(
-            [plural(1, "pass"), plural(2, "pass"), plural(3, "thread")],
-            ["1 pass", "2 passes", "3 threads"]
-        );
-    }
 }

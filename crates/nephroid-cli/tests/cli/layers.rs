@@ -99,7 +99,7 @@ fn layers_that_cannot_be_are_refused() {
     );
     refused(
         &["-o", "x.png", "--aov", "albedo"],
-        "error: --aov: layers are written to OpenEXR files only; name one with -o FILE.exr\n",
+        "error: --aov: layers are written to OpenEXR and film files only; name one with -o FILE.exr\n",
     );
     refused(
         &["-o", "x.exr", "--integrator", "path", "--aov", "depth,radius"],

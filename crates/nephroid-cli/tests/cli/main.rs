@@ -1,10 +1,11 @@
 //! The command as its users meet it: what it writes, what it prints and how it ends.
 
 // `clippy.toml` allows it in tests, but not in what tests have in common.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod fogs;
 mod integrators;
+mod kills;
 mod laboratory;
 mod layers;
 mod limits;
@@ -13,5 +14,8 @@ mod media_laboratory;
 mod outputs;
 mod pictures;
 mod scenes;
+mod sessions;
+mod shares;
 mod support;
 mod trouble;
+mod watching;

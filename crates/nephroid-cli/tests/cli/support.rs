@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use nephroid::film::{AovFilm, Film};
+use nephroid_formats::film_file::{Covered, read_film};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -36,6 +38,9 @@ pub const CHEAP: &[&str] = &[
     "20",
 ];
 
+/// A film file without what may differ between renders that are the same: its job.
+pub type Sums = (Film, Option<AovFilm>, Covered, Vec<(String, String)>);
+
 /// A temporary folder.
 pub struct Dir(TempDir);
 
@@ -65,6 +70,24 @@ impl Dir {
 
     pub fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// The sums in a film file.
+    #[track_caller]
+    pub fn sums(&self, name: &str) -> Sums {
+        let file = read_film(&self.path(name)).unwrap();
+        (file.film, file.aovs, file.header.covered, file.header.identity)
+    }
+
+    /// Whether two renders gave the same picture and the same sums: NAME.exr and NAME.film.
+    #[track_caller]
+    pub fn are_the_same(&self, one: &str, other: &str) {
+        assert!(
+            self.read(&format!("{one}.exr")) == self.read(&format!("{other}.exr")),
+            "{one} and {other}.exr"
+        );
+        let sums = |name: &str| self.sums(&format!("{name}.film"));
+        assert!(sums(one) == sums(other), "{one} and {other}.film");
     }
 
     /// The names in the folder, sorted, less the scene's.

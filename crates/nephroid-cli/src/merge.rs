@@ -1,0 +1,114 @@
+//! `nephroid merge`: parts of a render that were made apart, put together.
+
+use std::path::{Path, PathBuf};
+
+use nephroid_formats::film_file::{FilmFile, FilmFileError, FilmHeader, FilmMerger, read_header};
+use serde_json::{Value, json};
+
+use crate::console::{self, Messages};
+use crate::exit::{Exit, Failure};
+use crate::films;
+use crate::job::Job;
+use crate::layers;
+use crate::noise;
+use crate::output::{self, Kind, Output, Picture};
+use crate::session_args::MergeArgs;
+
+/// Adds films up.
+pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
+    let mut messages = Messages::new(args.quiet);
+    let outputs = output::outputs(&args.outputs)?;
+    let FilmFile { header, film, aovs } = sum(&args.parts)?;
+    let job = job_of_the_sum(&args.parts, &header, &outputs)?;
+    let missing = missing(&header, &job);
+    if header.covered.is_empty() {
+        messages.warning("there is not one sample in the films: the pictures are black");
+    } else if let Some(missing) = &missing {
+        messages.warning(&format!("the pictures are of a part of the render: missing is {missing}"));
+    }
+    let writes_film = outputs.iter().any(|output| output.kind == Kind::Film);
+    if writes_film && !is_one_piece(&header) {
+        messages.note("what is missing has to be merged into the film before it can be gone on with");
+    }
+    let layers = layers::develop(&job.layers, aovs.as_ref());
+    let picture = Picture { image: film.develop(), layers };
+    output::write_all(&outputs, &picture, &args.display, &|path| {
+        films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
+    })?;
+    let noise = noise::noise(&film);
+    if args.json {
+        let covered = films::passes(header.covered.ranges(), header.samples_per_pass);
+        let ranges: Vec<_> = header.covered.into_iter().map(|range| [range.start, range.end]).collect();
+        let outputs: Vec<_> = outputs.iter().map(|o| o.path.display().to_string()).collect();
+        let object = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "width": film.width(),
+            "height": film.height(),
+            "parts": args.parts.len(),
+            "covered": ranges,
+            "passes": covered,
+            "missing": missing,
+            "samples_per_pass": header.samples_per_pass,
+            "samples_per_pixel": header.covered.total(),
+            "noise": noise,
+            "mean_luminance": film.mean_luminance(),
+            "outputs": outputs,
+            "messages": messages.list.into_iter().map(Value::from).collect::<Vec<_>>(),
+        });
+        console::result(&format!("{object}\n"))?;
+    } else if !args.quiet {
+        let noise = noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
+        console::say(&format!(
+            "{} by {} pixels, {} samples each, {} of {} films{noise}",
+            film.width(),
+            film.height(),
+            header.covered.total(),
+            films::passes(header.covered.ranges(), header.samples_per_pass),
+            args.parts.len(),
+        ));
+    }
+    Ok(Exit::Done)
+}
+
+fn sum(parts: &[PathBuf]) -> Result<FilmFile, Failure> {
+    let fail = |error: FilmFileError| Failure::File(error.to_string());
+    let (first, others) =
+        parts.split_first().ok_or_else(|| Failure::Usage("there are no films".to_owned()))?;
+    let mut merger = FilmMerger::new(first).map_err(fail)?;
+    for part in others {
+        merger.add(part).map_err(fail)?;
+    }
+    Ok(merger.finish())
+}
+
+/// The job that its parts add up to: it writes the pictures that are written now, and took the time of all.
+fn job_of_the_sum(parts: &[PathBuf], header: &FilmHeader, outputs: &[Output]) -> Result<Job, Failure> {
+    let mut job = films::job_of(&parts[0], header)?;
+    job.limits = job.limits.whole(header.covered.end().div_ceil(u64::from(header.samples_per_pass)));
+    let pictures = outputs.iter().filter(|output| output.kind != Kind::Film);
+    job.outputs = pictures.map(|output| absolute(&output.path)).collect();
+    job.spent = 0.0;
+    for part in parts {
+        let header = read_header(part).map_err(|e| Failure::File(e.to_string()))?;
+        job.spent += films::job_of(part, &header)?.spent;
+    }
+    Ok(job)
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+fn is_one_piece(header: &FilmHeader) -> bool {
+    header.covered.gaps().is_empty() && !header.covered.is_empty()
+}
+
+/// Passes that the render should have and the films have not.
+fn missing(header: &FilmHeader, job: &Job) -> Option<String> {
+    let mut gaps = header.covered.gaps();
+    if let Some(end) = job.limits.end(header.samples_per_pass).filter(|end| *end > header.covered.end()) {
+        let begin = header.covered.end();
+        gaps.push(begin..end);
+    }
+    (!gaps.is_empty()).then(|| films::passes(&gaps, header.samples_per_pass))
+}

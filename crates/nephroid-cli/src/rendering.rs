@@ -1,0 +1,322 @@
+//! The middle of a render: from a scene to films, step by step, kept and shown on the way.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use nephroid::film::{AovFilm, Film};
+use nephroid::integrator::{LightTracerConfig, Method};
+use nephroid::session::{Place, RenderPlan, RenderSettings, Session, Statistics};
+use nephroid::world::World;
+use nephroid_formats::diagnostic::Diagnostic;
+use nephroid_formats::film_file::Covered;
+use nephroid_formats::mitsuba::SceneFile;
+
+use crate::checkpoint::Checkpoint;
+use crate::console::Messages;
+use crate::exit::Failure;
+use crate::films::{self, Begun};
+use crate::identity::{self, Identity};
+use crate::job::Order;
+use crate::layers::LayerPlan;
+use crate::load;
+use crate::noise;
+use crate::plan::Plan;
+use crate::preview::Previews;
+use crate::progress::{self, PhaseTimes, Watch};
+
+/// What is to be rendered.
+pub struct Task {
+    /// How.
+    pub settings: RenderSettings,
+    /// How much.
+    pub plan: Plan,
+    /// The layers of the picture.
+    pub layers: Vec<LayerPlan>,
+    /// What it is, as far as that is known beforehand.
+    pub identity: Identity,
+    /// What it was told to be.
+    pub order: Order,
+    /// What was rendered of it before.
+    pub begun: Option<Begun>,
+    /// Whether to show how far it is.
+    pub visible: bool,
+}
+
+/// What became of a render.
+pub struct Rendered {
+    /// The sums to make a picture of, and those of its layers.
+    pub picture: (Film, Option<AovFilm>),
+    /// The sums of whole steps only, if there is more in the picture.
+    whole: Option<(Film, Option<AovFilm>)>,
+    /// Numbers of the samples of each pixel that are in them.
+    pub covered: Range<u64>,
+    /// What the films are of.
+    pub identity: Identity,
+    /// What they are for.
+    pub job: crate::job::Job,
+    /// What was done in this run.
+    pub statistics: Statistics,
+    /// How much the picture still changes.
+    pub noise: Option<f64>,
+    /// Names of the lights, in the order of the ledger.
+    pub lights: Vec<String>,
+    /// Whether any of them has power.
+    pub has_light: bool,
+    /// Whether there are mirrors or glass that the integrator sees nothing in.
+    pub blind_to_specular: bool,
+    /// Why it ended.
+    pub ended: Ended,
+    /// How long the phases took.
+    pub phases: PhaseTimes,
+    /// How long it took to prepare the world.
+    pub preparing: Duration,
+    /// How long it took to render, from the pilot to the last sample.
+    pub rendering: Duration,
+    /// Seconds of that which were there for this run.
+    pub limit: Option<f64>,
+    /// What of the scene may not be meant so.
+    pub remarks: Vec<Diagnostic>,
+    /// Threads that worked on it.
+    pub threads: usize,
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All passes or samples are done.
+    Finished,
+    /// The time is up.
+    TimeIsUp,
+    /// Ctrl-C.
+    Interrupted,
+}
+
+impl Rendered {
+    /// Samples of each pixel in the picture, as far as all have the same.
+    pub fn samples(&self) -> u64 {
+        self.covered.end - self.covered.start
+    }
+
+    /// Samples of each pixel in a pass.
+    pub fn samples_per_pass(&self) -> u32 {
+        self.job.plan.camera.samples_per_pixel
+    }
+
+    /// Passes that are complete in the picture.
+    pub fn passes_done(&self) -> u64 {
+        self.samples() / u64::from(self.samples_per_pass().max(1))
+    }
+
+    /// Whether there is anything to write a film of.
+    pub fn has_film(&self) -> bool {
+        !self.covered.is_empty()
+    }
+
+    /// Writes the sums of whole steps.
+    pub fn write_film(&self, path: &std::path::Path) -> Result<(), String> {
+        let (film, aovs) = self.whole.as_ref().unwrap_or(&self.picture);
+        let covered = Covered::from_range(self.covered.clone());
+        films::write(path, (film, aovs.as_ref()), covered, &self.identity, &self.job)
+    }
+}
+
+/// What goes on beside a render.
+pub struct Companions<'a> {
+    /// Where it is kept.
+    pub checkpoint: Option<&'a mut Checkpoint>,
+    /// Where it is shown.
+    pub previews: &'a mut Previews<'a>,
+    /// What there is to say.
+    pub messages: &'a mut Messages,
+}
+
+/// Renders to the end of the plan, or as far as it gets.
+pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result<Rendered, Failure> {
+    let clock = Instant::now();
+    let SceneFile { scene, origins, .. } = file;
+    let world = load::world(scene, &origins)?;
+    let preparing = clock.elapsed();
+    let Task { settings, plan, layers, identity, order, begun, visible } = task;
+    let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);
+    let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
+    let watch = Watch::new(visible, limit, progress::listen()?);
+    let session = session(&world, settings, &layers, begun, &plan, &watch)?;
+    let decided = *session.plan();
+    let mut run = Run {
+        session,
+        per_pass: decided.camera.samples_per_pixel,
+        plan,
+        identity: identity::with_plan(identity, &decided),
+        order,
+        layers,
+        decided,
+        spent,
+        watch,
+        told: Instant::now(),
+        telling: Duration::ZERO,
+    };
+    let ended = run.finish(companions);
+    let covered = run.covered();
+    let job = run.job();
+    let picture = run.session.picture();
+    let torn = picture.0.iterations() != run.session.film().iterations();
+    Ok(Rendered {
+        noise: noise::noise(&picture.0),
+        whole: torn.then(|| (run.session.film().clone(), run.session.aovs().cloned())),
+        picture,
+        covered,
+        identity: run.identity,
+        job,
+        statistics: run.session.statistics().clone(),
+        remarks: load::remarks(&world, &origins),
+        lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
+        has_light: has_light(&world),
+        blind_to_specular: matches!(run.session.settings().method, Method::LightTracer(_))
+            && LightTracerConfig::misses(&world),
+        ended,
+        rendering: run.watch.elapsed(),
+        limit,
+        phases: run.watch.finish(),
+        preparing,
+        threads: rayon::current_num_threads(),
+    })
+}
+
+/// A session that begins at the plan's first sample, or goes on with what was begun.
+fn session<'w>(
+    world: &'w World,
+    settings: RenderSettings,
+    layers: &[LayerPlan],
+    begun: Option<Begun>,
+    plan: &Plan,
+    watch: &Watch,
+) -> Result<Session<'w>, Failure> {
+    let aovs: Vec<_> = layers.iter().map(|layer| layer.aov).collect();
+    let Some(begun) = begun else {
+        let session = Session::new(world, settings, watch).with_aovs(&aovs);
+        let per_pass = session.plan().camera.samples_per_pixel;
+        let place = Place::before_sample(plan.first_sample(per_pass), per_pass);
+        return Ok(session.starting_at(place));
+    };
+    let decided = begun.job.plan;
+    let place = Place::before_sample(begun.covered.end, decided.camera.samples_per_pixel);
+    let session = Session::with_plan(world, settings, decided).with_aovs(&aovs).starting_at(place);
+    let name = begun.path.display().to_string();
+    let damaged = |error| Failure::File(format!("{name}: is not of this picture: {error}"));
+    session.with_films(begun.film, begun.aovs).map_err(damaged)
+}
+
+/// A render under way.
+struct Run<'w> {
+    session: Session<'w>,
+    per_pass: u32,
+    plan: Plan,
+    identity: Identity,
+    order: Order,
+    layers: Vec<LayerPlan>,
+    decided: RenderPlan,
+    /// Seconds before this run.
+    spent: f64,
+    watch: Watch,
+    /// When the noise was last told, and how long that took.
+    told: Instant,
+    telling: Duration,
+}
+
+impl Run<'_> {
+    fn finish(&mut self, mut companions: Companions<'_>) -> Ended {
+        let ended = self.steps(&mut companions);
+        self.keep(&mut companions);
+        self.show(true, &mut companions);
+        ended
+    }
+
+    fn steps(&mut self, companions: &mut Companions<'_>) -> Ended {
+        let end = self.plan.end(self.per_pass);
+        if end.is_some_and(|end| self.sample() >= end) {
+            return Ended::Finished;
+        }
+        let window = self.session.film();
+        let pixels = u64::from(window.width()) * u64::from(window.height());
+        self.watch.expect(end.map(|end| (end - self.sample()).saturating_mul(pixels)));
+        loop {
+            // What went on before this run may have left no time at all.
+            if self.sample() > self.plan.first_sample(self.per_pass) && self.watch.time_is_up() {
+                return Ended::TimeIsUp;
+            }
+            self.tell();
+            if !self.session.step(&self.watch) {
+                return if self.watch.interrupted() { Ended::Interrupted } else { Ended::TimeIsUp };
+            }
+            if end.is_some_and(|end| self.sample() >= end) {
+                return Ended::Finished;
+            }
+            if companions.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_due()) {
+                self.keep(companions);
+            }
+            self.show(false, companions);
+        }
+    }
+
+    /// The number of the next sample of each pixel.
+    fn sample(&self) -> u64 {
+        self.session.place().samples_before(self.per_pass)
+    }
+
+    fn covered(&self) -> Range<u64> {
+        self.plan.first_sample(self.per_pass)..self.sample()
+    }
+
+    fn job(&self) -> crate::job::Job {
+        let spent = self.spent + self.watch.elapsed().as_secs_f64();
+        self.order.clone().job(self.decided, self.plan, &self.layers, spent)
+    }
+
+    fn keep(&self, companions: &mut Companions<'_>) {
+        let covered = self.covered();
+        let Some(checkpoint) = &mut companions.checkpoint else { return };
+        if covered.is_empty() {
+            return;
+        }
+        let films = (self.session.film(), self.session.aovs());
+        let trouble = checkpoint.keep(covered.end, |path| {
+            films::write(path, films, Covered::from_range(covered), &self.identity, &self.job())
+        });
+        if let Some(trouble) = trouble {
+            let warning = format!("the render goes on, but cannot be kept for now: {trouble}");
+            self.watch.aside(|| companions.messages.warning(&warning));
+        }
+    }
+
+    fn show(&self, last: bool, companions: &mut Companions<'_>) {
+        let trouble = companions.previews.show(last, || {
+            // With what there is of a step that was stopped; between steps there is none.
+            if last { self.session.picture().0.develop() } else { self.session.film().develop() }
+        });
+        for warning in trouble {
+            self.watch.aside(|| companions.messages.warning(&warning));
+        }
+    }
+
+    /// Tells how far the render is; how noisy the picture is at most once a second, and in a hundredth of the time.
+    fn tell(&mut self) {
+        let per_pass = u64::from(self.per_pass.max(1));
+        let pass = self.sample() / per_pass + 1;
+        let of = self.plan.end(self.per_pass).map(|end| format!(" of {}", end.div_ceil(per_pass)));
+        let text = format!("pass {pass}{}", of.unwrap_or_default());
+        let due = Duration::from_secs(1).max(100 * self.telling);
+        let noise = if self.watch.is_visible() && self.told.elapsed() >= due {
+            let begun = Instant::now();
+            let noise = noise::noise(self.session.film());
+            (self.told, self.telling) = (Instant::now(), begun.elapsed());
+            noise.map(|noise| format!("noise {}", noise::percent(noise)))
+        } else {
+            None
+        };
+        self.watch.tell(text, noise);
+    }
+}
+
+fn has_light(world: &World) -> bool {
+    world.lights().any(|(_, power)| power.max_channel() > 0.0)
+}

@@ -1,0 +1,130 @@
+//! The flags of renders that are interrupted, shared out and put together again, and watched.
+
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::args::{DisplayArgs, LimitArgs, seconds};
+
+/// Passes A, …, B−1 of a render, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PassRange {
+    /// The first of them.
+    pub begin: u64,
+    /// The first that is not among them.
+    pub end: u64,
+}
+
+/// Where a render is kept to go on with.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Sessions")]
+pub struct SessionArgs {
+    /// Render the passes A, …, B−1 only, counted from 0, of what the other flags describe; for -o FILE.film
+    #[arg(long, value_name = "A..B", value_parser = pass_range)]
+    pub pass_range: Option<PassRange>,
+    /// Keep the render in this file while it runs; `nephroid resume` goes on with it
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// Write it every so often [default: 5, and at least a hundred times what writing takes]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "checkpoint")]
+    pub checkpoint_every: Option<f64>,
+}
+
+/// Where a picture is shown while it is rendered.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Watching")]
+pub struct WatchArgs {
+    /// Write the picture so far to this .png while it is rendered
+    #[arg(long, value_name = "FILE")]
+    pub preview: Option<PathBuf>,
+    /// Write it every so often, where that takes less than a tenth of the time
+    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = seconds, requires = "preview")]
+    pub preview_every: f64,
+    /// Show the picture so far in the viewer tev [default: 127.0.0.1:14158]
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = "127.0.0.1:14158",
+          value_parser = address)]
+    pub tev: Option<SocketAddr>,
+}
+
+/// `nephroid resume`.
+#[derive(Args, Debug)]
+pub struct ResumeArgs {
+    /// The film file of a render: a checkpoint, or what was written with -o FILE.film
+    pub file: PathBuf,
+    /// A file to write instead of those of the render: .exr, .png or .film; may be repeated
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// Threads to work with [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress, notes and statistics
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print one JSON object about the render to the standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Another end than the one planned; --time counts from now
+    #[command(flatten)]
+    pub limits: LimitArgs,
+    #[command(flatten)]
+    pub watch: WatchArgs,
+}
+
+/// `nephroid merge`.
+#[derive(Args, Debug)]
+pub struct MergeArgs {
+    /// Film files of parts of one render
+    #[arg(value_name = "FILM", required = true)]
+    pub parts: Vec<PathBuf>,
+    /// A file to write: .exr or .png for a picture, .film for the sum of the parts; may be repeated
+    #[arg(short, long = "output", value_name = "FILE", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// No notes
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print one JSON object about the film to the standard output
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub display: DisplayArgs,
+}
+
+fn pass_range(text: &str) -> Result<PassRange, String> {
+    let expected = "write A..B for the passes A, …, B−1, counted from 0";
+    let (begin, end) = text.split_once("..").ok_or(expected)?;
+    let number = |text: &str| text.parse::<u64>().ok().filter(|n| *n <= 1 << 32);
+    let (Some(begin), Some(end)) = (number(begin), number(end)) else { return Err(expected.to_owned()) };
+    if begin < end { Ok(PassRange { begin, end }) } else { Err(format!("there are no passes: {expected}")) }
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let expected = "write HOST:PORT, as in 127.0.0.1:14158";
+    if text.rsplit_once(':').is_none_or(|(_, port)| port.parse::<u16>().is_err()) {
+        return Err(expected.to_owned());
+    }
+    let found = text.to_socket_addrs().map_err(|e| format!("{expected}: {e}"))?.next();
+    found.ok_or_else(|| expected.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_of_passes() {
+        assert_eq!(pass_range("0..1"), Ok(PassRange { begin: 0, end: 1 }));
+        assert_eq!(pass_range("7..12"), Ok(PassRange { begin: 7, end: 12 }));
+        for bad in ["", "..", "3", "3..", "..3", "3..3", "4..3", "-1..3", "0..=3", "0..99999999999"] {
+            assert!(pass_range(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn viewers_have_an_address_and_a_port() {
+        assert_eq!(address("127.0.0.1:14158"), Ok(SocketAddr::from(([127, 0, 0, 1], 14158))));
+        assert!(
+            ["127.0.0.1", "scene.xml", ":", "localhost:", "127.0.0.1:x"].iter().all(|a| address(a).is_err())
+        );
+    }
+}
