@@ -19,7 +19,6 @@ pictures() {
                 -o "docs/images/progressive-$scene-$seconds.png"
         done
     done
-    "$nephroid" render pool --resolution 400x400 --time 60 -o docs/images/pool.png
 }
 
 curves() {
