@@ -3,6 +3,7 @@
 
 mod fog;
 mod optics;
+mod slopes;
 mod view;
 mod volume_scenes;
 mod volumes;
@@ -11,8 +12,10 @@ pub use fog::{
     KERNELS, channel_means, collisions, expect_fair_books, grey_fog, medium_view, medium_views, volpath,
 };
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
+pub use slopes::{Errors, Part, Series, iterated, log_slope, single_iterations};
 pub use view::{
-    block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, pixel_origins, renders,
+    block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, pixel_origins,
+    renders,
 };
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,

@@ -2,7 +2,9 @@
 //! seeds, each of them an independent sample of every pixel.
 
 use nephroid::camera::Projection;
-use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, Show};
+use nephroid::integrator::{
+    DirectSource, FinalGather, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, Show,
+};
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::world::World;
 
@@ -106,4 +108,9 @@ pub fn map_view(show: Show, paths: u64) -> PhotonMapperConfig {
         show,
         ..PhotonMapperConfig::default()
     }
+}
+
+/// The light tracer, with paths of so many segments.
+pub fn light_tracer(max_depth: Option<u32>) -> Method {
+    Method::LightTracer(LightTracerConfig { max_depth })
 }

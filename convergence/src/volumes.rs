@@ -139,7 +139,7 @@ pub fn blocks(
     seeds: Range<u64>,
     side: usize,
 ) -> Vec<Vec<f64>> {
-    let width = world.scene().film.width as usize;
+    let width = world.scene().film.window().width as usize;
     let columns = width / side;
     let mut all = vec![Vec::new(); 3 * (columns * columns + 1)];
     for seed in seeds {

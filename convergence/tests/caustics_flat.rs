@@ -12,15 +12,16 @@ use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_convergence::{
-    Builder, blurred, derivative, fresnel, map_view, mean_radiances, path, pixel_origins, renders, root,
+    Builder, blurred, derivative, fresnel, light_tracer, map_view, mean_radiances, path, pixel_origins,
+    renders, root,
 };
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// Rings about the axis, of equal area and up to the radius 1, whose mean each test looks at.
 const RINGS: usize = 4;
-/// The plate and the pool by a fixed radius and by neighbours; the mirror, where one sum is tested and
+/// The plate and the pool by a fixed radius, by neighbours and by light tracing; the mirror, where one sum is tested and
 /// not rings, the same; and the pool from above.
-const TESTS: usize = 4 * RINGS + 3 + 1;
+const TESTS: usize = 6 * RINGS + 3 + 1;
 
 fn level() -> f64 {
     sidak(ALPHA, TESTS)
@@ -161,29 +162,38 @@ impl Reading {
 /// at; k = 100 lie within r = .056, the Laplacian of E over E is below 6, and r²/12 of it 1.6e-3.
 const READINGS: [Reading; 2] = [Reading::Fixed(0.1), Reading::Nearest { k: 100, bias: 2e-3 }];
 
-/// Tests the caustic light in rings around the axis, each render's mean of measured over expected.
-fn test_rings(world: &World, irradiance: impl Fn(f64) -> f64) {
+/// A function of the distance from the axis, by a table.
+fn around_axis(irradiance: impl Fn(f64) -> f64) -> impl Fn(f64, f64) -> f64 {
     let table: Vec<f64> = (0..=2000).map(|i| irradiance(f64::from(i) * 1e-3)).collect();
-    let exact = |x: f64, z: f64| {
+    move |x, z| {
         let r = (x * x + z * z).sqrt() * 1e3;
         let i = r as usize;
         table[i] + (r - i as f64) * (table[i + 1] - table[i])
-    };
+    }
+}
+
+/// Tests the caustic light in rings around the axis, each render's mean of measured over expected.
+fn test_rings(world: &World, irradiance: impl Fn(f64) -> f64) {
+    let exact = around_axis(irradiance);
     for reading in READINGS {
-        let expected: Vec<(usize, f64)> = pixel_origins(world)
-            .into_iter()
-            .map(|p| (((p.x * p.x + p.z * p.z) * RINGS as f64) as usize, reading.expectation(exact, p)))
-            .collect();
         let pictures = renders(world, &reading.method(Show::Caustic, 100_000), 2, 1..17);
-        for ring in 0..RINGS {
-            let ratio = |picture: &Vec<f64>| {
-                let pixels = picture.iter().zip(&expected).filter(|(_, e)| e.0 == ring);
-                let (sum, of) = pixels.fold((0.0, 0.0), |(s, o), (l, e)| (s + l * PI / ALBEDO, o + e.1));
-                sum / of
-            };
-            let test: MeanTest = pictures.iter().map(ratio).collect();
-            test.within(1.0, reading.bias()).assert_passes(level());
-        }
+        judge_rings(world, &pictures, |p| reading.expectation(&exact, p), reading.bias());
+    }
+}
+
+fn judge_rings(world: &World, pictures: &[Vec<f64>], expected: impl Fn(DVec3) -> f64, bias: f64) {
+    let expected: Vec<(usize, f64)> = pixel_origins(world)
+        .into_iter()
+        .map(|p| (((p.x * p.x + p.z * p.z) * RINGS as f64) as usize, expected(p)))
+        .collect();
+    for ring in 0..RINGS {
+        let ratio = |picture: &Vec<f64>| {
+            let pixels = picture.iter().zip(&expected).filter(|(_, e)| e.0 == ring);
+            let (sum, of) = pixels.fold((0.0, 0.0), |(s, o), (l, e)| (s + l * PI / ALBEDO, o + e.1));
+            sum / of
+        };
+        let test: MeanTest = pictures.iter().map(ratio).collect();
+        test.within(1.0, bias).assert_passes(level());
     }
 }
 
@@ -201,6 +211,20 @@ fn the_plates_jacobian_has_the_values_known() {
 #[test]
 fn a_glass_plate_concentrates_light_by_its_jacobian() {
     test_rings(&under_a_plate(lamp), |r| below_plate(r, 4));
+}
+
+/// Light tracing blurs nothing. Paths are cut off before light is reflected in the glass twice, or thrown back to the
+/// floor: after L S S D E of the plate, and L S D E of the pool.
+#[test]
+fn light_tracing_finds_the_same() {
+    let plate = around_axis(|r| below_plate(r, 1));
+    let pool_floor = around_axis(in_pool);
+    for (world, exact, max_depth) in
+        [(under_a_plate(lamp), &plate as &dyn Fn(f64, f64) -> f64, 5), (pool(0.7), &pool_floor, 4)]
+    {
+        let pictures = renders(&world, &light_tracer(Some(max_depth)), 48, 41..57);
+        judge_rings(&world, &pictures, |p| exact(p.x, p.z), 3e-4);
+    }
 }
 
 /// To next event estimation the glass is in the way: paths from the camera that meet no light by

@@ -17,7 +17,7 @@ use nephroid::scene::Scene;
 use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::{Image, Textures};
 use nephroid::world::World;
-use nephroid_convergence::{Builder, means, session};
+use nephroid_convergence::{Builder, light_tracer, means, session};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// As many as the pairs of means compared.
@@ -120,6 +120,7 @@ fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
     let mapper = PhotonMapperConfig { photons: 2000, caustic_photons: 500, emit, ..Default::default() };
     vec![
         ("path", Method::Path(PathConfig::default())),
+        ("ptracer", light_tracer(None)),
         ("photon mapper", Method::PhotonMapper(mapper.clone())),
         (
             "map on the spot",

@@ -69,7 +69,7 @@ pub struct RenderArgs {
     pub outputs: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// photonmapper, ppm, path (surfaces only), volpath, or scene for the one the scene asks for
+    /// photonmapper, ppm, path (surfaces only), volpath, ptracer (light tracing), or scene for the one the scene asks for
     #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
     pub integrator: Option<Integrator>,
     /// Size of the picture

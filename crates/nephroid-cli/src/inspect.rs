@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 
 use nephroid::handle::Handle;
+use nephroid::integrator::Method;
 use nephroid::laboratory::{Inspector, PixelReport};
 use nephroid::medium::Medium;
 use nephroid::session::RenderSettings;
@@ -47,6 +48,11 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
         messages.diagnostic(warning);
     }
     let method = method::choose(args.integrator, &file, &args.run.photons, &mut messages)?;
+    if let Method::LightTracer(_) = method {
+        let message = "inspect: of ptracer there is nothing to tell: its light paths start anywhere, and not at a pixel; \
+                       inspect path or volpath";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let limits = LimitArgs { spp: args.spp, passes: args.passes, time: None };
     let plan = Plan::new(&limits, file.sample_count);

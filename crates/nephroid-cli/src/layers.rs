@@ -49,14 +49,13 @@ pub fn choose(
     outputs: &[Output],
     messages: &mut Messages,
 ) -> Result<Vec<LayerPlan>, Failure> {
-    let path = matches!(method, Method::Path(_));
     let has_exr = outputs.iter().any(|output| output.kind == Kind::Exr);
     let mut layers: Vec<LayerPlan> = Vec::new();
     for aov in flags {
-        if path && aov.is_of_photons() {
+        if let Some(reason) = lacks(method, *aov) {
             let name = aov.name();
             return Err(Failure::Usage(format!(
-                "--aov {name}: the integrator path makes no estimates from photons, so it has no {name}"
+                "--aov {name}: the integrator {reason}, so it has no {name}"
             )));
         }
         let plan = LayerPlan { name: aov.name().to_owned(), aov: *aov, channels: aov.channels() };
@@ -69,9 +68,9 @@ pub fn choose(
         return Err(Failure::Usage(message.to_owned()));
     }
     for layer in of_scene {
-        if path && layer.aov.is_of_photons() {
+        if let Some(reason) = lacks(method, layer.aov) {
             messages.warning(&format!(
-                "the layer \"{}\" of the scene is left out: the integrator path makes no estimates from photons",
+                "the layer \"{}\" of the scene is left out: the integrator {reason}",
                 layer.name
             ));
         } else if !layers.iter().any(|other| other.name == layer.name) {
@@ -83,6 +82,20 @@ pub fn choose(
         layers.clear();
     }
     Ok(layers)
+}
+
+/// Why an integrator has no such value, its name first.
+fn lacks(method: &Method, aov: Aov) -> Option<&'static str> {
+    match (method, aov) {
+        (Method::Path(_), aov) if aov.is_of_photons() => Some("path makes no estimates from photons"),
+        (Method::LightTracer(_), aov) if aov.is_of_photons() => {
+            Some("ptracer makes no estimates from photons")
+        }
+        (Method::LightTracer(_), Aov::Direct | Aov::Global | Aov::Caustic | Aov::Medium) => {
+            Some("ptracer does not keep apart what its light paths bring")
+        }
+        _ => None,
+    }
 }
 
 /// The values of each layer.

@@ -1,6 +1,6 @@
 //! Which integrator renders, and with which parameters.
 
-use nephroid::integrator::{Method, PathConfig, PpmConfig};
+use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PpmConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
 use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
@@ -21,6 +21,8 @@ pub enum Integrator {
     Path,
     /// Path tracing through media.
     VolPath,
+    /// Light tracing to the camera.
+    PTracer,
     /// What the scene says.
     Scene,
 }
@@ -33,8 +35,9 @@ impl Integrator {
             "ppm" => Ok(Self::Ppm),
             "path" => Ok(Self::Path),
             "volpath" => Ok(Self::VolPath),
+            "ptracer" => Ok(Self::PTracer),
             "scene" => Ok(Self::Scene),
-            _ => Err("it must be photonmapper, ppm, path, volpath or scene".to_owned()),
+            _ => Err("it must be photonmapper, ppm, path, volpath, ptracer or scene".to_owned()),
         }
     }
 }
@@ -80,17 +83,14 @@ pub fn choose(
     let plan_photons = !PHOTON_COUNTS.iter().any(|name| draft.has(name));
     let plan_neighbours = !draft.has("neighbours");
     let mut config = draft.finish();
+    if chosen == Integrator::PTracer {
+        warn_of_foreign(flags, &["--max-depth"], "ptracer", messages);
+        return Ok(Method::LightTracer(LightTracerConfig { max_depth: config.max_depth }));
+    }
     if matches!(chosen, Integrator::Path | Integrator::VolPath) {
         let media = chosen == Integrator::VolPath;
-        let foreign: Vec<String> = flags
-            .names()
-            .into_iter()
-            .filter(|name| !matches!(name.as_str(), "--max-depth" | "--direct-lights"))
-            .collect();
-        if !foreign.is_empty() {
-            let name = if media { "volpath" } else { "path" };
-            messages.warning(&format!("{} mean nothing to the integrator {name}", foreign.join(", ")));
-        }
+        let name = if media { "volpath" } else { "path" };
+        warn_of_foreign(flags, &["--max-depth", "--direct-lights"], name, messages);
         if !media && file.scene.has_media() {
             messages.warning("the integrator path takes no notice of media; volpath is the one that does");
         }
@@ -112,6 +112,15 @@ pub fn choose(
 /// Parameters that say how many photons to emit; a progressive render plans that where none is given.
 const PHOTON_COUNTS: [&str; 4] = ["photons", "caustic-photons", "emit", "volume-photons"];
 
+/// Warns of flags that an integrator does not know.
+fn warn_of_foreign(flags: &PhotonFlags, known: &[&str], name: &str, messages: &mut Messages) {
+    let foreign: Vec<String> =
+        flags.names().into_iter().filter(|flag| !known.contains(&flag.as_str())).collect();
+    if !foreign.is_empty() {
+        messages.warning(&format!("{} mean nothing to the integrator {name}", foreign.join(", ")));
+    }
+}
+
 /// The scene's word.
 fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
     match request.name.as_str() {
@@ -119,6 +128,7 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
         "ppm" => Ok(Integrator::Ppm),
         "path" => Ok(Integrator::Path),
         "volpath" | "volpathmis" => Ok(Integrator::VolPath),
+        "ptracer" => Ok(Integrator::PTracer),
         other => {
             let message = format!("the integrator \"{other}\" cannot be rendered with");
             let diagnostic = match &request.location {
@@ -198,6 +208,12 @@ pub fn describe(method: &Method) -> Value {
             };
             let shared = PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(&config)));
             object.extend(shared.filter(|(name, _)| matches!(name.as_str(), "max_depth" | "direct_lights")));
+        }
+        Method::LightTracer(LightTracerConfig { max_depth }) => {
+            let config =
+                nephroid::integrator::PhotonMapperConfig { max_depth: *max_depth, ..Default::default() };
+            let shared = PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(&config)));
+            object.extend(shared.filter(|(name, _)| name == "max_depth"));
         }
     }
     Value::Object(object)

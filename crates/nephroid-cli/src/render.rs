@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use nephroid::film::Film;
+use nephroid::integrator::{LightTracerConfig, Method};
 use nephroid::session::{RenderSettings, Session, Statistics};
 use nephroid::world::World;
 use nephroid_formats::diagnostic::Diagnostic;
@@ -34,6 +35,8 @@ pub struct Rendered {
     pub lights: Vec<String>,
     /// Whether any of them has power.
     pub has_light: bool,
+    /// Whether there are mirrors or glass that the integrator sees nothing in.
+    pub blind_to_specular: bool,
     /// Why it ended.
     pub ended: Ended,
     /// How long the phases took.
@@ -162,6 +165,8 @@ fn render(
         layers: layers::develop(layers, further.as_ref()),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
         has_light: has_light(&world),
+        blind_to_specular: matches!(settings.method, Method::LightTracer(_))
+            && LightTracerConfig::misses(&world),
         ended,
         rendering: watch.elapsed(),
         phases: watch.finish(),

@@ -116,6 +116,9 @@ impl Report<'_> {
         if !rendered.has_light {
             messages.warning("there is no light in the scene: the picture is black");
         }
+        if rendered.blind_to_specular {
+            messages.warning("what is seen in mirrors and through glass is left out by ptracer");
+        }
         if rendered.film.iterations() > 0 && rendered.statistics.samples_per_pixel == 0 {
             messages.warning("stopped before every pixel had a sample: the rest of the picture is black");
         }

@@ -1,4 +1,6 @@
-//! Cameras: from a point of the picture to a ray.
+//! Cameras: from a point of the picture to a ray, and from a point of the world to the picture.
+
+mod connection;
 
 use std::f32::consts::FRAC_2_SQRT_PI;
 
@@ -76,6 +78,9 @@ pub(crate) struct CameraRays {
     /// Half-extent of the picture at distance 1 (perspective) or in camera space (orthographic).
     half: Vec2,
     offset: Vec2,
+    from_world: Transform,
+    /// See [`connection::density`].
+    density: f64,
 }
 
 impl CameraRays {
@@ -97,7 +102,10 @@ impl CameraRays {
                 (Vec2::new(half_width, half_width * h / w), principal_point_offset)
             }
         };
-        Self { to_world: camera.to_world, projection: camera.projection, size: Vec2::new(w, h), half, offset }
+        let Camera { to_world, projection, .. } = *camera;
+        let size = Vec2::new(w, h);
+        let density = connection::density(&to_world, &projection, size, half);
+        Self { to_world, projection, size, half, offset, from_world: to_world.inverse(), density }
     }
 
     /// The ray through a position of the whole picture, in pixels from its upper left corner. `u_lens`
@@ -121,7 +129,7 @@ impl CameraRays {
     /// Where a point of the world appears: its position on the whole picture in pixels, which may lie
     /// outside, and the origin of the ray through it. `None` behind the camera.
     pub fn project(&self, point: Vec3) -> Option<(Vec2, Vec3)> {
-        let local = self.to_world.inverse().point(point);
+        let local = self.from_world.point(point);
         let (q, origin) = match self.projection {
             // Through the middle of a lens.
             Projection::Perspective { .. } | Projection::ThinLens { .. } => {
@@ -129,8 +137,12 @@ impl CameraRays {
             }
             Projection::Orthographic => (Vec2::new(local.x, local.y), Vec3::new(local.x, local.y, 0.0)),
         };
-        let p = (Vec2::ONE - q / self.half) * 0.5;
-        (local.z > 0.0).then(|| ((p - self.offset) * self.size, self.to_world.point(origin)))
+        (local.z > 0.0).then(|| (self.film_position(q), self.to_world.point(origin)))
+    }
+
+    /// The place on the film, in pixels, of a place on the picture at distance 1 or, of parallel rays, in camera space.
+    fn film_position(&self, q: Vec2) -> Vec2 {
+        ((Vec2::ONE - q / self.half) * 0.5 - self.offset) * self.size
     }
 
     /// The radius of a disc as large as a pixel is that lies across the view at a distance along a ray. Mirrors and

@@ -53,8 +53,27 @@ fn the_command_line_chooses_the_integrator() {
         assert_eq!((&integrator(&run)["name"], &integrator(&run)["max_depth"]), (&name.into(), &6.into()));
         assert_eq!(run.stderr, "");
     }
-    let dir = dir_with(r#"<integrator type="ptracer"/>"#);
-    dir.run(&["render", "a.xml", "--integrator", "scene"]).ends_with(3).says("a.xml:2").says("ptracer");
+    let dir = dir_with(r#"<integrator type="bdpt"/>"#);
+    dir.run(&["render", "a.xml", "--integrator", "scene"]).ends_with(3).says("a.xml:2").says("bdpt");
+}
+
+#[test]
+fn light_tracing_is_asked_for_by_its_name() {
+    let file = r#"<integrator type="ptracer"><integer name="max_depth" value="6"/>
+        <integer name="samples_per_pass" value="4"/></integrator>"#;
+    let dir = dir_with(file);
+    for flag in ["ptracer", "scene"] {
+        let run = dir.run(&["render", "a.xml", "--json", "--integrator", flag]).ends_with(0);
+        assert_eq!(integrator(&run), serde_json::json!({"name": "ptracer", "max_depth": 6}));
+        assert_eq!(run.stderr, "");
+    }
+    let args = ["render", "a.xml", "--integrator", "ptracer", "--direct-lights", "all"];
+    dir.run(&args).ends_with(0).says("warning: --direct-lights mean nothing to the integrator ptracer");
+    let args = ["inspect", "a.xml", "--pixel", "0,0", "--integrator", "ptracer"];
+    dir.run(&args).ends_with(2).says("inspect path or volpath");
+    let glass = r#"<shape type="sphere"><bsdf type="dielectric"/></shape></scene>"#;
+    let run = Dir::with_scene("</scene>", glass).run(&["render", "a.xml", "--integrator", "ptracer"]);
+    run.ends_with(0).says("warning: what is seen in mirrors and through glass is left out by ptracer");
 }
 
 #[test]
@@ -86,13 +105,20 @@ fn parameters_are_checked_where_they_stand() {
 }
 
 #[test]
-fn path_tracing_and_photon_mapping_agree() {
-    // Of direct light the two make unbiased estimates, whose means are 1 % apart at the very most.
+fn path_and_light_tracing_and_photon_mapping_agree() {
+    // Of direct light all make unbiased estimates. The means of the first two are 1 % apart at the very most. Most of
+    // the light paths miss the picture: of so many the mean has a deviation of 1.2 %.
     let dir = dir_with(OURS);
-    let args = ["render", "a.xml", "--spp", "64", "--max-depth", "2", "-o"];
-    dir.run(&[&args[..], &["p.exr"]].concat()).ends_with(0);
-    dir.run(&[&args[..], &["q.exr", "--integrator", "path"]].concat()).ends_with(0);
-    let measures = dir.run(&["compare", "p.exr", "q.exr", "--json"]).ends_with(0).json();
-    let ratio = measures["mean_ratio"].as_f64().unwrap();
-    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    let render = |integrator: &str, spp: &str, file: &str| {
+        let args =
+            ["render", "a.xml", "--max-depth", "2", "-o", file, "--spp", spp, "--integrator", integrator];
+        dir.run(&args).ends_with(0);
+    };
+    render("photonmapper", "64", "p.exr");
+    for (integrator, spp, tolerance) in [("path", "64", 0.01), ("ptracer", "4096", 0.07)] {
+        render(integrator, spp, "q.exr");
+        let measures = dir.run(&["compare", "p.exr", "q.exr", "--json"]).ends_with(0).json();
+        let ratio = measures["mean_ratio"].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < tolerance, "{integrator}: {ratio}");
+    }
 }

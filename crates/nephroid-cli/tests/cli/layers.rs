@@ -105,6 +105,11 @@ fn layers_that_cannot_be_are_refused() {
         &["-o", "x.exr", "--integrator", "path", "--aov", "depth,radius"],
         "error: --aov radius: the integrator path makes no estimates from photons, so it has no radius\n",
     );
+    refused(
+        &["-o", "x.exr", "--integrator", "ptracer", "--aov", "depth,caustic"],
+        "error: --aov caustic: the integrator ptracer does not keep apart what its light paths bring, so it has no \
+         caustic\n",
+    );
 }
 
 fn with_aovs(list: &str) -> Dir {

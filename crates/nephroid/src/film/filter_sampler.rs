@@ -49,6 +49,15 @@ impl FilterSampler {
         Self { axis, weight }
     }
 
+    /// ∫f along one axis, of the f that is sampled.
+    pub(super) fn integral(&self) -> f64 {
+        match &self.axis {
+            Axis::Box => 1.0,
+            Axis::Tent { radius } => f64::from(*radius),
+            Axis::Table(table) => 2.0 * table.signed_total(),
+        }
+    }
+
     /// The sample for `u` in [0, 1)². Each offset grows with its coordinate of `u`, so stratified
     /// points stay stratified.
     #[inline]

@@ -8,6 +8,7 @@ mod filter_sampler;
 mod fixed;
 mod merge_error;
 mod pixel;
+mod splatter;
 mod sums;
 #[cfg(test)]
 mod sums_tests;
@@ -21,6 +22,7 @@ pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};
 pub use merge_error::MergeError;
 pub use pixel::{PixelSum, PixelTotal};
+pub(crate) use splatter::Splatter;
 pub use sums::{Film, FilmCounts};
 pub use tonemap::{Equalization, ToneMap, White};
 pub use tonemap_name::ToneMapError;

@@ -1,10 +1,13 @@
 //! Integrators: each a configuration and one iteration.
 
+mod light_tracer;
 mod path;
 mod photon_mapper;
 mod probe;
 pub(crate) mod progressive;
 
+pub use light_tracer::LightTracerConfig;
+pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
 pub use photon_mapper::{CameraPlan, DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
@@ -25,6 +28,8 @@ pub enum Method {
     Ppm(PpmConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
+    /// Unbiased light tracing to the camera, the reference for caustics.
+    LightTracer(LightTracerConfig),
 }
 
 impl Method {
@@ -35,6 +40,7 @@ impl Method {
             Self::Ppm(_) => "ppm",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
+            Self::LightTracer(_) => "ptracer",
         }
     }
 
@@ -43,7 +49,7 @@ impl Method {
         match self {
             Self::PhotonMapper(config) => Some(config),
             Self::Ppm(config) => Some(&config.mapper),
-            Self::Path(_) => None,
+            Self::Path(_) | Self::LightTracer(_) => None,
         }
     }
 }

@@ -136,6 +136,9 @@ pub(crate) struct Passed {
 /// Watches the estimate of one camera sample. What it is told changes nothing; a render that wants to
 /// know nothing passes `()`, and pays nothing.
 pub(crate) trait Probe {
+    /// Whether nothing is taken down, so that a sample without light need not be followed.
+    const IDLE: bool = false;
+
     /// What follows reaches the camera by a gather ray, or without one, multiplied by `base`.
     fn begin(&mut self, _gather_ray: Option<u64>, _base: Rgb) {}
     /// What follows is multiplied by this before `base`.
@@ -152,7 +155,9 @@ pub(crate) trait Probe {
     fn look_up(&mut self, _look_up: &LookUp, _gathered: Gathered) {}
 }
 
-impl Probe for () {}
+impl Probe for () {
+    const IDLE: bool = true;
+}
 
 /// An integrator that is ready to estimate camera samples.
 pub(crate) trait Estimator: Sync {

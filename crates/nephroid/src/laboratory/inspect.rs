@@ -6,8 +6,8 @@ use super::photons;
 use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
 use crate::integrator::{
-    Components, Estimator, Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, PpmConfig,
-    Turn,
+    Components, Estimator, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
+    PpmConfig, Turn,
 };
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -94,6 +94,9 @@ impl<'w> Inspector<'w> {
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
+            }
+            Method::LightTracer(config) => {
+                self.take(&LightTracer::new(self.world, &config), None, taken);
             }
         }
         self.samples += taken;

@@ -19,6 +19,8 @@ pub enum Stream {
     VolumePhotons = 7,
     /// Photon paths that fill the map of caustics in media.
     VolumeCausticPhotons = 8,
+    /// Light paths that are connected to the camera.
+    LightPaths = 9,
 }
 
 /// A 64-bit hash of what identifies a sequence: (seed, iteration, stream, path, …).

@@ -1,7 +1,7 @@
 //! The camera pass of a step, with further values of the picture or without.
 
 use crate::film::{AovFilm, AovSum, Film, PixelSum};
-use crate::integrator::{AovProbe, Estimator, PictureSums};
+use crate::integrator::{AovProbe, Brought, Estimator, PictureSums};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::transport::{CameraPass, Exposure, camera_pass};
@@ -28,6 +28,16 @@ impl Exposed {
             Self::Picture(exposure) => exposure.sums.iter_mut().for_each(|sum| *sum = sum.as_one_estimate()),
             Self::WithAovs(exposure) => {
                 exposure.sums.iter_mut().for_each(|(sum, _)| *sum = sum.as_one_estimate());
+            }
+        }
+    }
+
+    /// Adds what light paths brought.
+    pub fn add(&mut self, light: &Brought) {
+        match self {
+            Self::Picture(exposure) => light.add_to(exposure.sums.iter_mut(), &mut exposure.total),
+            Self::WithAovs(exposure) => {
+                light.add_to(exposure.sums.iter_mut().map(|(sum, _)| sum), &mut exposure.total);
             }
         }
     }

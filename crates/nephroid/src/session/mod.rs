@@ -11,7 +11,9 @@ pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
 
 use crate::film::{Aov, AovFilm, Film, MergeError};
-use crate::integrator::{Guides, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn};
+use crate::integrator::{
+    Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
+};
 use crate::observer::Observer;
 use crate::transport::{CameraPass, Ledger};
 use crate::world::World;
@@ -120,6 +122,13 @@ impl<'w> Session<'w> {
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
                 let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                self.take(exposed)
+            }
+            Method::LightTracer(config) => {
+                let tracer = LightTracer::new(self.world, &config);
+                let Some(light) = tracer.paths(&pass, observer) else { return false };
+                let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                exposed.add(&light);
                 self.take(exposed)
             }
         };

@@ -33,7 +33,7 @@ impl RenderPlan {
                 let (photons, camera) = progressive::plan(world, config, settings.seed);
                 Self { photons, camera }
             }
-            Method::Path(_) => {
+            Method::Path(_) | Method::LightTracer(_) => {
                 Self { photons: PhotonPlan::default(), camera: CameraPlan::plain(settings.samples_per_pixel) }
             }
         }

@@ -27,7 +27,8 @@ pub(crate) enum Partner {
     BsdfSample,
 }
 
-/// A vertex of a path from the camera, where direct light is estimated.
+/// A vertex of a path: of one from the camera, where direct light is estimated, or of one from a light, which is
+/// connected to the camera there. `wo` points back along the path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lit<'a> {
     pub scatterer: Scatterer<'a>,
@@ -46,7 +47,7 @@ pub(crate) enum Scatterer<'a> {
 }
 
 impl<'a> Lit<'a> {
-    fn vantage(&self) -> Vantage<'a> {
+    pub fn vantage(&self) -> Vantage<'a> {
         match self.scatterer {
             Scatterer::Surface { hit, .. } => Vantage::Surface(&hit.point),
             Scatterer::Medium { position, .. } => Vantage::Space(position),
@@ -61,6 +62,14 @@ impl<'a> Lit<'a> {
         }
     }
 
+    /// What is scattered towards `wi` of each watt that comes along `wo`, per solid angle, on a path from a light.
+    pub fn spread(&self, wi: Vec3) -> Rgb {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => self.eval(wi) * bsdf.adjoint_factor(self.wo, wi),
+            Scatterer::Medium { .. } => self.eval(wi),
+        }
+    }
+
     fn pdf(&self, wi: Vec3) -> f32 {
         match self.scatterer {
             Scatterer::Surface { bsdf, .. } => bsdf.pdf(self.wo, wi),
@@ -69,7 +78,7 @@ impl<'a> Lit<'a> {
     }
 
     /// What a ray is in that leaves the vertex.
-    fn beyond(&self, world: &World, direction: Vec3) -> Surroundings {
+    pub fn beyond(&self, world: &World, direction: Vec3) -> Surroundings {
         match self.scatterer {
             Scatterer::Surface { hit, .. } => world.cross(self.inside, hit, -self.wo, direction),
             Scatterer::Medium { .. } => self.inside,

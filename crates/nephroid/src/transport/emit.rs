@@ -39,7 +39,7 @@ pub(super) struct Kept<T> {
 /// turn, with the number of the path and a state that begins anew with each.
 pub(super) fn emit<H: Default, T: Copy + Send>(
     job: &Job<'_>,
-    keep: impl Fn(&mut H, u64, Event, PhotonKind) -> Kept<T> + Sync,
+    keep: impl Fn(&mut H, u64, Event<'_>, PhotonKind) -> Kept<T> + Sync,
 ) -> Option<([Vec<T>; 2], Ledger)> {
     let mut photons = [Vec::new(), Vec::new()];
     let mut ledger = Ledger::new(job.world.light_count());
@@ -78,7 +78,7 @@ pub(super) fn emit<H: Default, T: Copy + Send>(
 fn trace<H: Default, T: Copy>(
     job: &Job<'_>,
     paths: Range<u64>,
-    keep: &(impl Fn(&mut H, u64, Event, PhotonKind) -> Kept<T> + Sync),
+    keep: &(impl Fn(&mut H, u64, Event<'_>, PhotonKind) -> Kept<T> + Sync),
 ) -> ([Vec<T>; 2], Ledger) {
     let &Job { world, settings, map, key, work, .. } = job;
     let mut stored = [Vec::new(), Vec::new()];

@@ -5,6 +5,7 @@ mod direct;
 mod emit;
 mod history;
 mod ledger;
+mod light_pass;
 mod photon_pass;
 mod plan;
 mod recorder;
@@ -19,6 +20,7 @@ pub(crate) use direct::{
 };
 pub use history::PhotonKind;
 pub use ledger::{Balance, Ledger};
+pub(crate) use light_pass::{LightPass, Splats, light_pass};
 pub use photon_pass::{Extras, InMedia, PhotonPass, photon_pass, volume_pass};
 pub use plan::{MapPlan, PhotonPlan, PhotonTargets, VolumeKind};
 pub use recorder::{

@@ -55,9 +55,9 @@ pub fn photon_pass(
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<PhotonPass> {
-    let record = |(): &mut (), _, event| match event {
-        Event::Surface(photon) => Some(photon),
-        Event::Collision(_) | Event::Way(_) | Event::Specular => None,
+    let record = |(): &mut (), _, event: Event<'_>| match event {
+        Event::Surface(photon, _) => Some(photon),
+        Event::Collision(..) | Event::Way(_) | Event::Specular => None,
     };
     let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
     Some(PhotonPass {
@@ -83,9 +83,9 @@ pub fn volume_pass(
     let paths = [plan.volume.paths, plan.volume_caustic.paths];
     match targets.volume_kind {
         VolumeKind::Points => {
-            let record = |(): &mut (), _, event| match event {
-                Event::Collision(photon) => Some(photon),
-                Event::Surface(_) | Event::Way(_) | Event::Specular => None,
+            let record = |(): &mut (), _, event: Event<'_>| match event {
+                Event::Collision(photon, _) => Some(photon),
+                Event::Surface(..) | Event::Way(_) | Event::Specular => None,
             };
             let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
             let [all, caustics] = lists;
@@ -95,9 +95,9 @@ pub fn volume_pass(
             )
         }
         VolumeKind::Beams => {
-            let record = |(): &mut (), _, event| match event {
+            let record = |(): &mut (), _, event: Event<'_>| match event {
                 Event::Way(beam) => Some(beam),
-                Event::Surface(_) | Event::Collision(_) | Event::Specular => None,
+                Event::Surface(..) | Event::Collision(..) | Event::Specular => None,
             };
             let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
             let [all, caustics] = lists;
@@ -117,7 +117,7 @@ pub(super) fn volume_pass_with<H: Default, T: Copy + Send>(
     seed: u64,
     iteration: u64,
     observer: &dyn Observer,
-    record: impl Fn(&mut H, u64, Event) -> Option<T> + Sync,
+    record: impl Fn(&mut H, u64, Event<'_>) -> Option<T> + Sync,
 ) -> Option<[Vec<T>; 2]> {
     if plan.volume.paths + plan.volume_caustic.paths == 0 {
         return Some([Vec::new(), Vec::new()]);
@@ -156,7 +156,7 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
     seed: u64,
     iteration: u64,
     observer: &dyn Observer,
-    record: impl Fn(&mut H, u64, Event) -> Option<T> + Sync,
+    record: impl Fn(&mut H, u64, Event<'_>) -> Option<T> + Sync,
 ) -> Option<Stored<T>> {
     let work = Work::begin(observer, Phase::Photons, plan.global.paths + plan.caustic.paths);
     let job = |map, paths, key| Job { world, settings, map, paths, key, work: &work };
@@ -178,7 +178,7 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
         let (lists, next) = match (&event, kind) {
             (Event::Way(_) | Event::Specular, _) => ([false, false], Next::Continue),
             // Whatever follows is the global map's.
-            (Event::Collision(_), _) => ([false, false], Next::Stop),
+            (Event::Collision(..), _) => ([false, false], Next::Stop),
             (_, PhotonKind::Caustic) => ([true, false], beyond),
             (_, PhotonKind::Afterglow) => ([false, true], Next::Stop),
             (_, PhotonKind::Direct | PhotonKind::Haze | PhotonKind::Global) => ([false, false], Next::Stop),

@@ -181,18 +181,18 @@ fn count(
 }
 
 /// Whether a trial path's event would be stored, and whether another may be.
-fn tried(map: MapKind, targets: &PhotonTargets, event: &Event, kind: PhotonKind) -> (bool, Next) {
+fn tried(map: MapKind, targets: &PhotonTargets, event: &Event<'_>, kind: PhotonKind) -> (bool, Next) {
     match map {
         MapKind::Global => {
             let counts = match kind {
                 PhotonKind::Direct => targets.store_direct,
                 kind => kind != PhotonKind::Caustic,
             };
-            (counts && matches!(event, Event::Surface(_)), Next::Continue)
+            (counts && matches!(event, Event::Surface(..)), Next::Continue)
         }
         MapKind::Caustic => match event {
-            Event::Surface(_) => (kind == PhotonKind::Caustic, Next::Stop),
-            Event::Collision(_) => (false, Next::Stop),
+            Event::Surface(..) => (kind == PhotonKind::Caustic, Next::Stop),
+            Event::Collision(..) => (false, Next::Stop),
             Event::Way(_) | Event::Specular => (false, Next::Continue),
         },
         MapKind::Volume | MapKind::VolumeCaustic => stored_in_volume(map, targets, event, kind),
@@ -203,12 +203,12 @@ fn tried(map: MapKind, targets: &PhotonTargets, event: &Event, kind: PhotonKind)
 pub(super) fn stored_in_volume(
     map: MapKind,
     targets: &PhotonTargets,
-    event: &Event,
+    event: &Event<'_>,
     kind: PhotonKind,
 ) -> (bool, Next) {
     let fits = match event {
-        Event::Surface(_) | Event::Specular => false,
-        Event::Collision(_) => targets.volume_kind == VolumeKind::Points,
+        Event::Surface(..) | Event::Specular => false,
+        Event::Collision(..) => targets.volume_kind == VolumeKind::Points,
         Event::Way(_) => targets.volume_kind == VolumeKind::Beams,
     };
     if map == MapKind::Volume {
@@ -220,8 +220,8 @@ pub(super) fn stored_in_volume(
     }
     match (event, kind) {
         // Whatever follows a surface that is not specular, or a collision, is no caustic.
-        (Event::Surface(_), _) => (false, Next::Stop),
-        (Event::Collision(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
+        (Event::Surface(..), _) => (false, Next::Stop),
+        (Event::Collision(..), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
         (Event::Specular, _) => (false, Next::Continue),
         (Event::Way(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Continue),
     }

@@ -119,10 +119,10 @@ impl Trail {
     }
 
     /// Follows an event; a photon on a surface or in a medium lands there.
-    fn follow(&mut self, event: &Event) {
+    fn follow(&mut self, event: &Event<'_>) {
         match event {
-            Event::Surface(_) => self.meet(Some('D')),
-            Event::Collision(_) => self.meet(Some('V')),
+            Event::Surface(..) => self.meet(Some('D')),
+            Event::Collision(..) => self.meet(Some('V')),
             Event::Specular => {
                 self.meet(None);
                 self.bounces.push('S');
@@ -144,9 +144,9 @@ pub fn record_photon_pass(
     observer: &dyn Observer,
 ) -> Option<RecordedPass> {
     // The walk shows every event, stored or not.
-    let record = |trail: &mut Trail, path, event| {
+    let record = |trail: &mut Trail, path, event: Event<'_>| {
         trail.follow(&event);
-        let Event::Surface(photon) = event else { return None };
+        let Event::Surface(photon, _) = event else { return None };
         Some(RecordedPhoton { photon, path, bounces: trail.bounces })
     };
     let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
@@ -176,9 +176,9 @@ pub fn record_volume_pass(
         let nothing = RecordedVolumePass { volume, volume_caustic, volume_paths: 0, volume_caustic_paths: 0 };
         return Some(nothing);
     }
-    let record = |trail: &mut Trail, path, event| {
+    let record = |trail: &mut Trail, path, event: Event<'_>| {
         trail.follow(&event);
-        let Event::Collision(photon) = event else { return None };
+        let Event::Collision(photon, _) = event else { return None };
         let bounces = Bounces { ends_in_medium: true, ..trail.bounces };
         Some(RecordedPhoton { photon, path, bounces })
     };

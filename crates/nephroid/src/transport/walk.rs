@@ -1,17 +1,18 @@
 //! The random walk of a photon: from a light, over surfaces and through media, to its end.
 
+use super::direct::{Lit, Scatterer};
 use super::history::{History, PhotonKind};
 use super::ledger::Balance;
 use super::roulette::survival;
 use super::start::{Start, start};
 use crate::color::Rgb;
 use crate::light::SphereSampling;
-use crate::material::{Transport, segments_by};
+use crate::material::{Bsdf, Transport, segments_by};
 use crate::math::Ray;
 use crate::medium::{Matter, Passage};
 use crate::photon_map::{Beam, Photon, VolumePhoton};
 use crate::sampling::Sampler;
-use crate::world::{Surroundings, World, leave};
+use crate::world::{Hit, Surroundings, World, leave};
 
 /// Which light a photon path starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,13 +83,14 @@ pub(super) enum Next {
     Stop,
 }
 
-/// What a walk shows its visitor.
+/// What a walk shows its visitor. Photons come with the vertex of the path where they are; its `wo` points back along
+/// their flight.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Event {
+pub(super) enum Event<'a> {
     /// A photon on a surface with a density to estimate.
-    Surface(Photon),
+    Surface(Photon, &'a Lit<'a>),
     /// The power that is scattered at a collision.
-    Collision(VolumePhoton),
+    Collision(VolumePhoton, &'a Lit<'a>),
     /// A stretch of the way through a medium.
     Way(Beam),
     /// A bounce at a specular surface.
@@ -139,7 +141,7 @@ pub(super) fn walk(
     path: u64,
     sampler: &mut Sampler,
     books: &mut [Balance],
-    mut visit: impl FnMut(Event, PhotonKind) -> Next,
+    mut visit: impl FnMut(Event<'_>, PhotonKind) -> Next,
 ) {
     let Some(start) = start(world, settings, map, path, sampler) else {
         return;
@@ -164,7 +166,7 @@ fn step(
     walker: &mut Walker,
     sampler: &mut Sampler,
     book: &mut Balance,
-    visit: &mut impl FnMut(Event, PhotonKind) -> Next,
+    visit: &mut impl FnMut(Event<'_>, PhotonKind) -> Next,
 ) -> Next {
     let hit = world.intersect(&walker.ray);
     if let Some(matter) = world.matter(walker.inside) {
@@ -225,21 +227,9 @@ fn step(
         return Next::Continue;
     }
     let (depth, power) = (walker.depth(), walker.power);
-    if !bsdf.is_dirac() && !bsdf.is_black() {
-        let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
-        let photon = Photon {
-            position: hit.point.position,
-            // A mask lets some photons pass, and those that land stand for them.
-            power: power / world.opacity(&hit),
-            wi: wo,
-            normal,
-            depth: u16::try_from(depth).unwrap_or(u16::MAX),
-            light: walker.light,
-        };
-        if visit(Event::Surface(photon), walker.history.kind()) == Next::Stop {
-            book.end(power);
-            return Next::Stop;
-        }
+    if !bsdf.is_dirac() && !bsdf.is_black() && land(world, walker, &hit, &bsdf, visit) == Next::Stop {
+        book.end(power);
+        return Next::Stop;
     }
     if settings.max_photon_depth.is_some_and(|max| depth >= max) {
         book.end(power);
@@ -268,6 +258,29 @@ fn step(
     Next::Continue
 }
 
+/// Shows the photon that lands at a hit.
+fn land(
+    world: &World,
+    walker: &Walker,
+    hit: &Hit,
+    bsdf: &Bsdf,
+    visit: &mut impl FnMut(Event<'_>, PhotonKind) -> Next,
+) -> Next {
+    let wo = -walker.ray.direction;
+    let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
+    let photon = Photon {
+        position: hit.point.position,
+        // A mask lets some photons pass, and those that land stand for them.
+        power: walker.power / world.opacity(hit),
+        wi: wo,
+        normal,
+        depth: u16::try_from(walker.depth()).unwrap_or(u16::MAX),
+        light: walker.light,
+    };
+    let vertex = Lit { scatterer: Scatterer::Surface { hit, bsdf }, wo, inside: walker.inside };
+    visit(Event::Surface(photon, &vertex), walker.history.kind())
+}
+
 /// A collision after so long a way: absorption by weight, and a new direction.
 fn collide(
     settings: &WalkSettings,
@@ -276,7 +289,7 @@ fn collide(
     t: f32,
     sampler: &mut Sampler,
     book: &mut Balance,
-    visit: &mut impl FnMut(Event, PhotonKind) -> Next,
+    visit: &mut impl FnMut(Event<'_>, PhotonKind) -> Next,
 ) -> Next {
     let (position, wo, depth) = (walker.ray.at(t), -walker.ray.direction, walker.depth());
     let scattered = walker.power * matter.albedo(position);
@@ -292,7 +305,10 @@ fn collide(
         light: walker.light,
         medium: medium_number(walker.inside),
     };
-    let stopped = visit(Event::Collision(photon), walker.history.kind_in_medium()) == Next::Stop;
+    let scatterer = Scatterer::Medium { position, phase: matter.phase() };
+    let vertex = Lit { scatterer, wo, inside: walker.inside };
+    let kind = walker.history.kind_in_medium();
+    let stopped = visit(Event::Collision(photon, &vertex), kind) == Next::Stop;
     if stopped || settings.max_photon_depth.is_some_and(|max| depth >= max) {
         book.end(scattered);
         return Next::Stop;
