@@ -20,7 +20,8 @@ pub fn iterated(world: &World, method: Method, iterations: u64, seed: u64) -> Se
     session
 }
 
-fn iterate_to(session: &mut Session<'_>, iterations: u64) {
+/// Renders on until so many iterations are complete.
+pub(crate) fn iterate_to(session: &mut Session<'_>, iterations: u64) {
     while session.place().iteration + u64::from(session.iteration_is_complete()) < iterations {
         assert!(session.step(&Silent), "nothing cancels");
     }

@@ -18,20 +18,19 @@ use nephroid::integrator::{
     DirectSource, FinalGather, Method, PhotonMapperConfig, PpmConfig, Show, VolumeEstimate,
 };
 use nephroid::math::{DVec3, Transform, Vec3};
-use nephroid::medium::Phase;
 use nephroid::shape::Geometry;
 use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 use nephroid_convergence::{
-    Builder, Part, Series, grey_fog, light_tracer, log_slope, medium_view, path, pixel_origins,
-    polygon_irradiance, volpath,
+    Builder, Part, Series, beside_a_light, light_tracer, log_slope, medium_view, over_pixels, path,
+    polygon_irradiance, progressive, under_a_light, volpath,
 };
-use nephroid_testkit::{ALPHA, MeanTest, Tolerance, integrate, sidak};
+use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// More than the slopes that are tested.
 const TESTS: usize = 20;
 
-const SEEDS: u64 = 16;
+const SEEDS: u64 = 32;
 
 /// Pixels of a picture's side.
 const SIDE: u32 = 8;
@@ -70,55 +69,20 @@ fn judge_progressive(name: &str, world: &World, config: PhotonMapperConfig, exac
     });
     let series = Series::render(world, &method, &numbers(), 0..SEEDS, exact);
     let errors = series.errors(None);
-    println!(
-        "{name}: mse {:.5?} variance {:.5?} bias² {:.5?}",
-        errors.mse, errors.variance, errors.bias_sq
-    );
+    println!("{name}: mse {:.5?} variance {:.5?} bias² {:.5?}", errors.mse, errors.variance, errors.bias_sq);
     println!("bias {:.3}", log_slope(&series.iterations, &errors.bias_sq));
     let [of_noise, of_bias] = expected(d);
     judge(&format!("{name}, noise"), &series.slope(Part::Variance), of_noise, of_noise);
     judge(name, &series.slope(Part::Mse), of_noise, of_bias);
 }
 
-/// The mean over each pixel of a function of the place on the film's plane, by a rule of 3 × 3 points of Gauss.
-fn over_pixels(world: &World, width: f64, value: impl Fn(DVec3) -> f64) -> Vec<f64> {
-    const POINTS: [(f64, f64); 3] =
-        [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
-    let to_world = world.scene().camera.to_world;
-    let [right, up] = [DVec3::X, DVec3::Y].map(|axis| to_world.0.transform_vector3(axis).normalize());
-    let at = |origin: &DVec3| {
-        let mut sum = 0.0;
-        for (x, wx) in POINTS {
-            for (y, wy) in POINTS {
-                sum += wx * wy * value(*origin + 0.5 * width * (x * right + y * up));
-            }
-        }
-        sum
-    };
-    pixel_origins(world).iter().map(at).collect()
-}
-
-fn floor(b: &mut Builder, half: f64) {
-    let white = b.diffuse(1.0);
-    let to_world = Transform::scale(DVec3::splat(half)).then(Transform::rotate(DVec3::X, -90.0));
-    b.shape(Geometry::Rectangle, to_world, white);
-}
-
-/// A floor under a point light, where irradiance is (1 + r²)^(−3/2) a unit below it: blurred by .4 it is 8 % too dark
-/// in the middle.
+/// On the spot, where irradiance bends.
 #[test]
 fn surfaces() {
-    const HALF: f64 = 0.7;
-    let mut b = Builder::parallel_view(Vec3::new(0.0, 0.5, 0.0), Vec3::ZERO, HALF, SIDE, SIDE);
-    floor(&mut b, 2.0);
-    b.point_light(Vec3::Y, 1.0);
-    let world = b.build();
-    let exact = over_pixels(&world, 2.0 * HALF / f64::from(SIDE), |p| {
-        let r_sq = p.x * p.x + p.z * p.z;
-        libm::pow(1.0 + r_sq, -1.5) / PI
-    });
+    let (world, exact) = under_a_light(SIDE, 0.7);
+    let exact: Vec<f64> = exact(0.0).into_iter().map(|e| e / PI).collect();
     let config = PhotonMapperConfig {
-        emit: Some(800),
+        emit: Some(1200),
         neighbours: 60,
         direct: DirectSource::Map,
         final_gather: FinalGather::Off,
@@ -128,68 +92,35 @@ fn surfaces() {
     judge_progressive("surfaces", &world, config, &exact, 2.0);
 }
 
-/// Fog around a point light, of which a part beside the light is seen by parallel rays.
-fn beside_a_light() -> (World, Vec<f64>) {
-    const HALF: f64 = 0.3;
-    const REACH: f64 = 3.0;
-    const SIGMA: f64 = 0.5;
-    let center = Vec3::new(0.6, 0.0, 3.5);
-    let mut b = Builder::parallel_view(center, Vec3::new(0.6, 0.0, 0.0), HALF, SIDE, SIDE);
-    b.point_light(Vec3::ZERO, 1.0);
-    let fog = b.medium(grey_fog(SIGMA as f32, 0.8, Phase::Isotropic));
-    let ball = Geometry::Sphere { center: Vec3::ZERO, radius: REACH as f32 };
-    b.filled(ball, Transform::IDENTITY, fog);
-    let world = b.build();
-    let exact = over_pixels(&world, 2.0 * HALF / f64::from(SIDE), |p| {
-        let b_sq = p.x * p.x + p.y * p.y;
-        let half = (REACH * REACH - b_sq).sqrt();
-        let at = |z: f64| {
-            let d_sq = b_sq + z * z;
-            0.8 * SIGMA / (4.0 * PI) * libm::exp(-SIGMA * (half - z + d_sq.sqrt())) / d_sq
-        };
-        integrate(at, &[-half, -0.5, 0.0, 0.5, half], Tolerance::relative(1e-7)).value
-    });
-    (world, exact)
-}
-
-fn in_fog(kind: VolumeKind, estimate: VolumeEstimate, count: u64, k: u32) -> PhotonMapperConfig {
+/// Fog that shows from the map what it scatters once.
+fn in_fog(kind: VolumeKind, estimate: VolumeEstimate, paths: u64) -> PhotonMapperConfig {
     PhotonMapperConfig {
-        volume_neighbours: Some(k),
+        volume_neighbours: Some(60),
+        beam_crossings: 8.0,
         max_depth: Some(2),
-        beam_crossings: k as f32,
-        emit: Some(count),
-        ..medium_view(kind, estimate, count)
+        emit: Some(paths),
+        ..medium_view(kind, estimate, paths)
     }
 }
 
 #[test]
-fn points_in_media_by_beam() {
-    let (world, exact) = beside_a_light();
-    judge_progressive(
-        "points by beam",
-        &world,
-        in_fog(VolumeKind::Points, VolumeEstimate::Beam, 800, 8),
-        &exact,
-        2.0,
-    );
+fn points_in_media_along_rays() {
+    let (world, exact) = beside_a_light(SIDE);
+    let config = in_fog(VolumeKind::Points, VolumeEstimate::Beam, 1500);
+    judge_progressive("points along rays", &world, config, &exact, 2.0);
 }
 
 #[test]
-fn points_in_media_by_march() {
-    let (world, exact) = beside_a_light();
-    judge_progressive(
-        "points by march",
-        &world,
-        in_fog(VolumeKind::Points, VolumeEstimate::March, 800, 8),
-        &exact,
-        3.0,
-    );
+fn points_in_media_near_rays() {
+    let (world, exact) = beside_a_light(SIDE);
+    let config = in_fog(VolumeKind::Points, VolumeEstimate::March, 1500);
+    judge_progressive("points near rays", &world, config, &exact, 3.0);
 }
 
 #[test]
 fn beams_in_media() {
-    let (world, exact) = beside_a_light();
-    judge_progressive("beams", &world, in_fog(VolumeKind::Beams, VolumeEstimate::Beam, 100, 8), &exact, 1.0);
+    let (world, exact) = beside_a_light(SIDE);
+    judge_progressive("beams", &world, in_fog(VolumeKind::Beams, VolumeEstimate::Beam, 150), &exact, 1.0);
 }
 
 /// What does not blur has noise alone, ∝ 1/N: a floor under a square lamp that lies a unit above.
@@ -197,7 +128,7 @@ fn beams_in_media() {
 fn unbiased() {
     const HALF: f64 = 0.7;
     let mut b = Builder::parallel_view(Vec3::new(0.0, 0.5, 0.0), Vec3::ZERO, HALF, SIDE, SIDE);
-    floor(&mut b, 2.0);
+    b.white_floor(2.0);
     let (black, glow) = (b.diffuse(0.0), b.constant(1.0));
     let lamp = Transform::scale(DVec3::splat(0.5)).then(Transform::rotate(DVec3::X, 90.0));
     b.shape(Geometry::Rectangle, lamp.then(Transform::translate(DVec3::Y)), black).emission = Some(glow);

@@ -3,6 +3,8 @@
 //! before. Their mean converges, and each is independent of all others.
 
 mod balance;
+#[cfg(test)]
+mod balance_tests;
 mod config;
 mod trial;
 
