@@ -59,21 +59,22 @@ fn judge(name: &str, slope: &MeanTest, from: f64, to: f64) {
     assert!(outcome.passes(sidak(ALPHA, TESTS)), "{name}: {outcome}");
 }
 
-/// Renders and judges. `of_noise` and `of_bias` are the dimensions that count for the variance and for the bias.
+/// Renders, and judges noise by itself and the error by the two that it is a mixture of.
 fn judge_progressive(name: &str, world: &World, config: PhotonMapperConfig, exact: &[f64], d: f64) {
-    let method = Method::Ppm(PpmConfig {
-        mapper: config,
-        plan_photons: false,
-        plan_neighbours: false,
-        samples_per_pixel: Some(1),
-    });
-    let series = Series::render(world, &method, &numbers(), 0..SEEDS, exact);
-    let errors = series.errors(None);
-    println!("{name}: mse {:.5?} variance {:.5?} bias² {:.5?}", errors.mse, errors.variance, errors.bias_sq);
-    println!("bias {:.3}", log_slope(&series.iterations, &errors.bias_sq));
+    let series = render(world, config, exact);
     let [of_noise, of_bias] = expected(d);
     judge(&format!("{name}, noise"), &series.slope(Part::Variance), of_noise, of_noise);
     judge(name, &series.slope(Part::Mse), of_noise, of_bias);
+}
+
+/// With one camera sample of each pixel to an iteration.
+fn render(world: &World, config: PhotonMapperConfig, exact: &[f64]) -> Series {
+    let Method::Ppm(plan) = progressive(config) else { unreachable!("it is progressive") };
+    let method = Method::Ppm(PpmConfig { samples_per_pixel: Some(1), ..plan });
+    let series = Series::render(world, &method, &numbers(), 0..SEEDS, exact);
+    let errors = series.errors(None);
+    println!("mse {:.5?}\nvariance {:.5?}\nbias² {:.5?}", errors.mse, errors.variance, errors.bias_sq);
+    series
 }
 
 /// On the spot, where irradiance bends.
@@ -96,7 +97,7 @@ fn surfaces() {
 fn in_fog(kind: VolumeKind, estimate: VolumeEstimate, paths: u64) -> PhotonMapperConfig {
     PhotonMapperConfig {
         volume_neighbours: Some(60),
-        beam_crossings: 8.0,
+        beam_crossings: 5.0,
         max_depth: Some(2),
         emit: Some(paths),
         ..medium_view(kind, estimate, paths)
@@ -110,11 +111,16 @@ fn points_in_media_along_rays() {
     judge_progressive("points along rays", &world, config, &exact, 2.0);
 }
 
+/// Balls blur three dimensions, but a ray's steps shorten with their radius: noise falls faster than that of one ball, and
+/// the error no slower than its blur.
 #[test]
 fn points_in_media_near_rays() {
     let (world, exact) = beside_a_light(SIDE);
     let config = in_fog(VolumeKind::Points, VolumeEstimate::March, 1500);
-    judge_progressive("points near rays", &world, config, &exact, 3.0);
+    let series = render(&world, config, &exact);
+    let [of_noise, of_bias] = expected(3.0);
+    judge("points near rays, noise", &series.slope(Part::Variance), -1.0, of_noise);
+    judge("points near rays", &series.slope(Part::Mse), -1.0, of_bias);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use nephroid_testkit::{ALPHA, sidak, z_test};
 
 use super::testing::{Rng, photon_at};
 use super::{
-    Bandwidth, Gathered, Kernel, NearestList, PhotonMap, Photons, Query, VolumeMap, VolumePhoton,
+    Bandwidth, Blur, Gathered, Kernel, NearestList, PhotonMap, Photons, Query, VolumeMap, VolumePhoton,
     VolumePhotons, VolumeQuery, gather,
 };
 use crate::color::Rgb;
@@ -147,7 +147,7 @@ fn expect_uniform(dimensions: u32, maps: usize, n: usize, bandwidths: &[Bandwidt
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let deviation = (variance / count).sqrt();
-        assert!(deviation < 0.04, "too few samples: {deviation}");
+        assert!(deviation < 0.05, "too few samples: {deviation}");
         let outcome = z_test(mean, 1.0, deviation);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{dimensions}D, {kernel}, {bandwidth:?}: {outcome}");
     }
@@ -157,10 +157,10 @@ fn expect_uniform(dimensions: u32, maps: usize, n: usize, bandwidths: &[Bandwidt
 /// Two neighbours alone have no finite variance, so they come with a least radius.
 #[test]
 fn a_part_is_right_in_uniform_light() {
-    for (dimensions, n, maps) in [(2, 1500, 150), (3, 2000, 60)] {
+    for (dimensions, n, maps) in [(2, 1000, 100), (3, 1500, 25)] {
         let mut bandwidths = Vec::new();
         let of = |count| radius_of(dimensions, count, n);
-        for k in [4, 10, 60] {
+        for k in [5, 60] {
             for part in [0.9, 0.5] {
                 bandwidths.push(Bandwidth::Part { k, max_radius: 0.25, part, least: 0.0 });
             }
@@ -175,10 +175,38 @@ fn a_part_is_right_in_uniform_light() {
     }
 }
 
+/// In a Poisson process the k-th photon lies where k are expected in the mean, so the mean of r^d over what one photon has
+/// is k in the first iteration, and falls as the d-th power of the factor, over whatever part of whichever radius.
+#[test]
+fn a_series_narrows_at_its_pace() {
+    let (mut rng, mut scratch, mut weights) = (Rng::new(5), NearestList::new(), Vec::new());
+    for (dimensions, n, side) in [(2, 20_000, 30), (3, 40_000, 12u64)] {
+        let points: Vec<Vec3> = (0..n).map(|_| rng.point()).collect();
+        let light = Light::new(dimensions, &points);
+        for iteration in [0, 7, 63, 4095] {
+            let blur = Blur::of_iteration(iteration);
+            let bandwidth = blur.narrow(Bandwidth::Nearest { k: 60, max_radius: 0.2 }, dimensions);
+            let queries = side.pow(dimensions);
+            let mut mean = 0.0;
+            for i in 0..queries {
+                let place = |i: u64| 0.2 + 0.6 * (i % side) as f32 / side as f32;
+                let position = Vec3::new(place(i), place(i / side), place(i / side / side));
+                let gathered = light.weights(position, Kernel::Box, bandwidth, &mut scratch, &mut weights);
+                let share = gathered.radius / radius_of(dimensions, 1.0, n);
+                mean += f64::from(share).powi(dimensions as i32) / queries as f64;
+            }
+            let exact = 60.0
+                * libm::pow(iteration as f64 + 1.0, -f64::from(dimensions) / (4.0 + f64::from(dimensions)));
+            // The photons of 400 discs of 60 or more are 1 % off by chance.
+            assert!((mean / exact - 1.0).abs() < 0.03, "{dimensions}D, {iteration}: {mean} of {exact}");
+        }
+    }
+}
+
 /// The largest radius holds one photon, two or three in the mean.
 #[test]
 fn a_part_is_right_where_few_photons_are() {
-    for (dimensions, n, maps) in [(2, 1000, 150), (3, 1500, 80)] {
+    for (dimensions, n, maps) in [(2, 500, 100), (3, 1000, 25)] {
         let part = |count| Bandwidth::Part {
             k: 10,
             max_radius: radius_of(dimensions, count, n),
