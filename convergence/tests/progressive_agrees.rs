@@ -2,9 +2,9 @@
 //! by mirrors or through glass, photon mapping, and progressive photon mapping in iterations from the 20th on.
 //!
 //! Photon maps blur, and more so where surfaces meet; with as few photons as are sent here, that is forgiven as stated
-//! beside each scene: so much of the whole picture and twice that of a quarter of it. That the progressive way does with
-//! less is another test's. Beyond that the tests of the file share the level [`ALPHA`] by Šidák's formula: on seeds chosen
-//! afresh, correct code would fail somewhere with probability 1 %.
+//! beside each scene: so much of the whole picture and twice that of a quarter of it. Beyond that the tests of the file
+//! share the level [`ALPHA`] by Šidák's formula: on seeds chosen afresh, correct code would fail somewhere with
+//! probability 1 %.
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;

@@ -147,7 +147,7 @@ fn expect_uniform(dimensions: u32, maps: usize, n: usize, bandwidths: &[Bandwidt
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let deviation = (variance / count).sqrt();
-        assert!(deviation < 0.05, "too few samples: {deviation}");
+        assert!(deviation < 0.08, "too few samples: {deviation}");
         let outcome = z_test(mean, 1.0, deviation);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{dimensions}D, {kernel}, {bandwidth:?}: {outcome}");
     }
@@ -157,7 +157,7 @@ fn expect_uniform(dimensions: u32, maps: usize, n: usize, bandwidths: &[Bandwidt
 /// Two neighbours alone have no finite variance, so they come with a least radius.
 #[test]
 fn a_part_is_right_in_uniform_light() {
-    for (dimensions, n, maps) in [(2, 1000, 100), (3, 1500, 25)] {
+    for (dimensions, n, maps) in [(2, 1000, 100), (3, 1500, 50)] {
         let mut bandwidths = Vec::new();
         let of = |count| radius_of(dimensions, count, n);
         for k in [5, 60] {
@@ -206,7 +206,7 @@ fn a_series_narrows_at_its_pace() {
 /// The largest radius holds one photon, two or three in the mean.
 #[test]
 fn a_part_is_right_where_few_photons_are() {
-    for (dimensions, n, maps) in [(2, 500, 100), (3, 1000, 25)] {
+    for (dimensions, n, maps) in [(2, 500, 100), (3, 1000, 50)] {
         let part = |count| Bandwidth::Part {
             k: 10,
             max_radius: radius_of(dimensions, count, n),
