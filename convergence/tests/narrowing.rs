@@ -82,7 +82,6 @@ fn compare(late: &MeanTest, early: &MeanTest, factor: f64, forgiven: f64) -> Out
     let allowed = (forgiven * expected).abs();
     let nearest = late.mean().clamp(expected - allowed, expected + allowed);
     let (a, b) = (late.standard_error(), factor * early.standard_error());
-    println!("{:.5} against {expected:.5} ± {:.5}", late.mean(), (a * a + b * b).sqrt());
     z_test(late.mean(), nearest, (a * a + b * b).sqrt())
 }
 
@@ -177,7 +176,6 @@ fn films_know_their_noise() {
         let (all, count) = (ratio(None), films.len() as f64);
         let pseudo = |seed| count * all - (count - 1.0) * ratio(Some(seed));
         let test: MeanTest = (0..films.len()).map(pseudo).collect();
-        println!("{name}: {:.3} ± {:.3}", test.mean(), test.standard_error());
         let outcome = test.within(1.0, 0.01);
         assert!(outcome.passes(level()), "{name}: {outcome}");
         assert!(test.standard_error() < 0.15, "{name}: too few seeds");

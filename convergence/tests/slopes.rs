@@ -59,7 +59,6 @@ fn expected(dimensions: f64) -> [f64; 2] {
 fn judge(name: &str, slope: &MeanTest, from: f64, to: f64) {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from).abs());
     let outcome = slope.within(middle, half / middle.abs());
-    println!("{name}: {:.3} ± {:.3}, expected {from:.3} to {to:.3}", slope.mean(), slope.standard_error());
     assert!(outcome.passes(sidak(ALPHA, TESTS)), "{name}: {outcome}");
 }
 
@@ -75,10 +74,7 @@ fn judge_progressive(name: &str, world: &World, config: PhotonMapperConfig, exac
 fn render(world: &World, config: PhotonMapperConfig, exact: &[f64]) -> Series {
     let Method::Ppm(plan) = progressive(config) else { unreachable!("it is progressive") };
     let method = Method::Ppm(PpmConfig { samples_per_pixel: Some(1), ..plan });
-    let series = Series::render(world, &method, &numbers(), 0..SEEDS, exact);
-    let errors = series.errors(None);
-    println!("mse {:.5?}\nvariance {:.5?}\nbias² {:.5?}", errors.mse, errors.variance, errors.bias_sq);
-    series
+    Series::render(world, &method, &numbers(), 0..SEEDS, exact)
 }
 
 /// On the spot, where irradiance bends.
