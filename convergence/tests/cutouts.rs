@@ -12,13 +12,11 @@ use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
-use nephroid_convergence::{
-    Builder, light_tracer, map_view, mean_radiances, path, photon_mapper, progressive,
-};
+use nephroid_convergence::{Builder, light_tracer, map_view, mean_radiances, path, photon_mapper};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
-/// Six methods for two scenes, and four in the furnace.
-const TESTS: usize = 16;
+/// Four methods for two scenes, and three in the furnace.
+const TESTS: usize = 11;
 
 fn mask(b: &mut Builder, opacity: f32, inside: Handle<Material>) -> Handle<Material> {
     let opacity = b.constant(opacity);
@@ -33,14 +31,12 @@ fn square(b: &mut Builder, y: f64, half: f64, material: Handle<Material>) {
     b.shape(Geometry::Rectangle, to_world, material);
 }
 
-fn methods() -> [(&'static str, Method); 6] {
+fn methods() -> [(&'static str, Method); 4] {
     [
         ("path", path()),
         ("ptracer", light_tracer(None)),
         ("photon mapper", Method::PhotonMapper(photon_mapper(2000))),
         ("map on the spot", Method::PhotonMapper(map_view(Show::Direct, 20_000))),
-        ("ppm", progressive(photon_mapper(2000))),
-        ("ppm on the spot", progressive(map_view(Show::Direct, 10_000))),
     ]
 }
 
@@ -100,5 +96,4 @@ fn white_veils_vanish_in_a_white_sky() {
     judge("path", &world, &path(), 1.0, 0.0);
     judge("ptracer", &world, &light_tracer(None), 1.0, 0.0);
     judge("photon mapper", &world, &Method::PhotonMapper(photon_mapper(20_000)), 1.0, 0.01);
-    judge("ppm", &world, &progressive(photon_mapper(20_000)), 1.0, 0.01);
 }

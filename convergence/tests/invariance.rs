@@ -8,14 +8,12 @@ use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{Film, FilmSettings, Filter};
 use nephroid::handle::Arena;
-use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig};
+use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Media;
-use nephroid::observer::Silent;
 use nephroid::scene::Scene;
-use nephroid::session::{RenderPlan, RenderSettings};
 use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::{Image, Textures};
 use nephroid::world::World;
@@ -120,8 +118,6 @@ fn shapes(b: &mut Builder) {
 /// So many paths are emitted for each map, or as many as a pilot finds to be needed.
 fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
     let mapper = PhotonMapperConfig { photons: 2000, caustic_photons: 500, emit, ..Default::default() };
-    let ppm =
-        |mapper| Method::Ppm(PpmConfig { mapper, plan_photons: emit.is_none(), ..PpmConfig::default() });
     vec![
         ("path", Method::Path(PathConfig::default())),
         ("ptracer", light_tracer(None)),
@@ -131,15 +127,6 @@ fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
             Method::PhotonMapper(PhotonMapperConfig {
                 direct: DirectSource::Map,
                 radius: Some(0.2 * scale),
-                ..mapper.clone()
-            }),
-        ),
-        ("ppm", ppm(mapper.clone())),
-        (
-            "ppm on the spot",
-            ppm(PhotonMapperConfig {
-                final_gather: FinalGather::Off,
-                direct: DirectSource::Map,
                 ..mapper.clone()
             }),
         ),
@@ -216,23 +203,6 @@ fn threads_change_no_bit_and_seeds_do() {
             assert!(on(threads, 1) == alone, "{name} on {threads} threads");
         }
         assert!(on(2, 2) != alone, "{name} with another seed");
-    }
-}
-
-/// A plan follows from the scene, the settings and the seed, whoever makes it and on whatever.
-#[test]
-fn a_plan_made_again_is_the_same() {
-    let world = room(1.0, Transform::IDENTITY);
-    for (name, method) in methods(1.0, None) {
-        let plan = |threads: usize, seed: u64| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            let settings = RenderSettings { method: method.clone(), samples_per_pixel: 4, seed };
-            pool.install(|| RenderPlan::new(&world, &settings, &Silent))
-        };
-        let first = plan(1, 3);
-        for threads in [1, 2, 7] {
-            assert_eq!(plan(threads, 3), first, "{name} on {threads} threads");
-        }
     }
 }
 

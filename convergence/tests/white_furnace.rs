@@ -12,7 +12,7 @@ use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::texture::Image;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, light_tracer, means, progressive, render, session};
+use nephroid_convergence::{Builder, light_tracer, means, render, session};
 use nephroid_testkit::{ALPHA, MeanTest, Outcome, PixelTest, sidak};
 
 /// More than the statistical tests of this file.
@@ -36,12 +36,11 @@ fn photon_mapper(config: PhotonMapperConfig) -> Method {
     Method::PhotonMapper(PhotonMapperConfig { emit: Some(1000), ..config })
 }
 
-fn methods() -> [(&'static str, Method); 4] {
+fn methods() -> [(&'static str, Method); 3] {
     [
         ("ptracer", light_tracer(None)),
         ("path", Method::Path(PathConfig::default())),
         ("photon mapper", photon_mapper(PhotonMapperConfig::default())),
-        ("ppm", progressive(PhotonMapperConfig { emit: Some(1000), ..PhotonMapperConfig::default() })),
     ]
 }
 

@@ -9,7 +9,7 @@ use nephroid_testkit::{ALPHA, sidak, z_test};
 
 use super::testing::{Rng, photon_at};
 use super::{
-    Bandwidth, Blur, Gathered, Kernel, NearestList, PhotonMap, Photons, Query, VolumeMap, VolumePhoton,
+    Bandwidth, Gathered, Kernel, NearestList, PhotonMap, Photons, Query, VolumeMap, VolumePhoton,
     VolumePhotons, VolumeQuery, gather,
 };
 use crate::color::Rgb;
@@ -150,56 +150,6 @@ fn expect_uniform(dimensions: u32, maps: usize, n: usize, bandwidths: &[Bandwidt
         assert!(deviation < 0.08, "too few samples: {deviation}");
         let outcome = z_test(mean, 1.0, deviation);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{dimensions}D, {kernel}, {bandwidth:?}: {outcome}");
-    }
-}
-
-/// With a least radius below, among and above those that are found, and largest ones that stop some of the searches.
-/// Two neighbours alone have no finite variance, so they come with a least radius.
-#[test]
-fn a_part_is_right_in_uniform_light() {
-    for (dimensions, n, maps) in [(2, 1000, 100), (3, 1500, 50)] {
-        let mut bandwidths = Vec::new();
-        let of = |count| radius_of(dimensions, count, n);
-        for k in [5, 60] {
-            for part in [0.9, 0.5] {
-                bandwidths.push(Bandwidth::Part { k, max_radius: 0.25, part, least: 0.0 });
-            }
-            let max_radius = of(k as f32);
-            bandwidths.push(Bandwidth::Part { k, max_radius, part: 0.5, least: 0.5 * max_radius });
-            bandwidths.push(Bandwidth::Part { k, max_radius, part: 0.9, least: max_radius });
-        }
-        let least = of(1.0);
-        bandwidths.push(Bandwidth::Part { k: 2, max_radius: 0.25, part: 0.5, least });
-        bandwidths.push(Bandwidth::Part { k: 60, max_radius: 0.25, part: 0.2, least: 0.0 });
-        expect_uniform(dimensions, maps, n, &bandwidths, 10 + u64::from(dimensions));
-    }
-}
-
-/// In a Poisson process the k-th photon lies where k are expected in the mean, so the mean of r^d over what one photon has
-/// is k in the first iteration, and falls as the d-th power of the factor, over whatever part of whichever radius.
-#[test]
-fn a_series_narrows_at_its_pace() {
-    let (mut rng, mut scratch, mut weights) = (Rng::new(5), NearestList::new(), Vec::new());
-    for (dimensions, n, side) in [(2, 20_000, 30), (3, 40_000, 12u64)] {
-        let points: Vec<Vec3> = (0..n).map(|_| rng.point()).collect();
-        let light = Light::new(dimensions, &points);
-        for iteration in [0, 7, 63, 4095] {
-            let blur = Blur::of_iteration(iteration);
-            let bandwidth = blur.narrow(Bandwidth::Nearest { k: 60, max_radius: 0.2 }, dimensions);
-            let queries = side.pow(dimensions);
-            let mut mean = 0.0;
-            for i in 0..queries {
-                let place = |i: u64| 0.2 + 0.6 * (i % side) as f32 / side as f32;
-                let position = Vec3::new(place(i), place(i / side), place(i / side / side));
-                let gathered = light.weights(position, Kernel::Box, bandwidth, &mut scratch, &mut weights);
-                let share = gathered.radius / radius_of(dimensions, 1.0, n);
-                mean += f64::from(share).powi(dimensions as i32) / queries as f64;
-            }
-            let exact = 60.0
-                * libm::pow(iteration as f64 + 1.0, -f64::from(dimensions) / (4.0 + f64::from(dimensions)));
-            // The photons of 400 discs of 60 or more are 1 % off by chance.
-            assert!((mean / exact - 1.0).abs() < 0.03, "{dimensions}D, {iteration}: {mean} of {exact}");
-        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::transport::PhotonPlan;
 const STORED_COST: f64 = 1.0;
 
 /// Estimates of later iterations blur less, and what photons make them vary by grows. This is for the sixteenth.
-pub(super) const LATER: f64 = 2.5;
+const LATER: f64 = 2.5;
 
 /// Gather rays of a sample at most.
 const MOST_GATHER_RAYS: f64 = 16.0;

@@ -3,8 +3,6 @@
 //! before. Their mean converges, and each is independent of all others.
 
 mod balance;
-#[cfg(test)]
-mod balance_tests;
 mod config;
 mod trial;
 
