@@ -1,19 +1,24 @@
 //! Scenes built in code and renders of them, for the tests in `tests/`: every estimator against its
 //! closed form, and integrators against one another.
 
+mod curved;
 mod fog;
 mod optics;
+mod slopes;
 mod view;
 mod volume_scenes;
 mod volumes;
 
+pub use curved::{beside_a_light, over_pixels, under_a_light};
 pub use fog::{
     KERNELS, channel_means, collisions, expect_fair_books, grey_fog, medium_view, medium_views, volpath,
 };
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
+use slopes::iterate_to;
+pub use slopes::{Errors, Part, Series, iterated, log_slope, single_iterations};
 pub use view::{
     block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, pixel_origins,
-    renders,
+    progressive, renders,
 };
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,
@@ -159,21 +164,23 @@ impl Builder {
     }
 }
 
-/// Renders one iteration.
+/// Renders as [`session`] does.
 pub fn render(world: &World, method: Method, samples_per_pixel: u32, seed: u64) -> Image {
     session(world, method, samples_per_pixel, seed).film().develop()
 }
 
-/// Renders one iteration and keeps the session.
+/// Iterations of a progressive render in [`session`]: the second and the third are narrower than the first.
+const ITERATIONS: u64 = 3;
+
+/// Renders one iteration, or if it is a progressive method three, and keeps the session.
 ///
 /// # Panics
 /// Never: nothing cancels it.
 pub fn session(world: &World, method: Method, samples_per_pixel: u32, seed: u64) -> Session<'_> {
+    let iterations = if matches!(method, Method::Ppm(_)) { ITERATIONS } else { 1 };
     let settings = RenderSettings { method, samples_per_pixel, seed };
     let mut session = Session::new(world, settings, &Silent);
-    while !session.iteration_is_complete() {
-        assert!(session.step(&Silent), "nothing cancels");
-    }
+    iterate_to(&mut session, iterations);
     session
 }
 

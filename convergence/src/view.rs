@@ -3,7 +3,7 @@
 
 use nephroid::camera::Projection;
 use nephroid::integrator::{
-    DirectSource, FinalGather, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, Show,
+    DirectSource, FinalGather, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show,
 };
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::world::World;
@@ -108,6 +108,12 @@ pub fn map_view(show: Show, paths: u64) -> PhotonMapperConfig {
         show,
         ..PhotonMapperConfig::default()
     }
+}
+
+/// Progressive photon mapping with the photons and the neighbours that are given.
+pub fn progressive(mapper: PhotonMapperConfig) -> Method {
+    let plan = PpmConfig { plan_photons: false, plan_neighbours: false, ..PpmConfig::default() };
+    Method::Ppm(PpmConfig { mapper, ..plan })
 }
 
 /// The light tracer, with paths of so many segments.

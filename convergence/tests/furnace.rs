@@ -9,19 +9,23 @@
 //! somewhere in this file with probability 1 %.
 
 use nephroid::color::Rgb;
-use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, Show};
+use nephroid::integrator::{
+    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show,
+};
 use nephroid::light::SphereSampling;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::photon_map::Kernel;
 use nephroid::shape::Geometry;
 use nephroid::transport::{DirectLights, LightChoice};
 use nephroid::world::World;
-use nephroid_convergence::{Builder, means, photon_mapper_variants, render, session};
+use nephroid_convergence::{
+    Builder, means, photon_mapper_variants, progressive, render, session, single_iterations,
+};
 use nephroid_testkit::{ALPHA, MeanTest, Outcome, sidak};
 use std::f64::consts::PI;
 
 /// More than the t-tests of this file.
-const TESTS: usize = 200;
+const TESTS: usize = 300;
 
 /// Rounding of single precision over a path, which a noiseless estimator would be convicted for.
 const ROUNDING: f64 = 1e-5;
@@ -80,11 +84,15 @@ fn path(max_depth: Option<u32>) -> Method {
 /// A path tracer and the ways of the photon mapper that share no code with one another.
 fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
     let with = |config: PhotonMapperConfig| Method::PhotonMapper(PhotonMapperConfig { max_depth, ..config });
+    let ppm = |config: PhotonMapperConfig| progressive(PhotonMapperConfig { max_depth, ..config });
     vec![
         ("path", path(max_depth)),
         ("map", with(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),
         ("gather", with(PhotonMapperConfig { final_gather: FinalGather::Rays(4), ..nearest() })),
         ("direct from the map", with(PhotonMapperConfig { direct: DirectSource::Map, ..nearest() })),
+        ("ppm", ppm(nearest())),
+        ("ppm by the map", ppm(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),
+        ("ppm of fixed radius", ppm(PhotonMapperConfig { direct: DirectSource::Map, ..mapper() })),
     ]
 }
 
@@ -105,6 +113,26 @@ fn every_albedo_has_the_closed_form() {
         let world = furnace(albedo);
         for (name, method) in few_methods(None) {
             expect(&format!("{name} at {albedo}"), &world, &method, 40, all_bounces(f64::from(albedo)));
+        }
+    }
+}
+
+/// Progressive photon mapping as it plans by itself, and iterations far on in a render, where a part of the neighbours
+/// is left.
+#[test]
+fn early_and_late_iterations_have_the_closed_form() {
+    let (world, exact) = (furnace(0.8), all_bounces(0.8));
+    expect("ppm", &world, &Method::Ppm(PpmConfig::default()), 8, exact);
+    for final_gather in [FinalGather::Off, FinalGather::Auto] {
+        for direct in [DirectSource::Rays, DirectSource::Map] {
+            let method = progressive(PhotonMapperConfig { final_gather, direct, ..nearest() });
+            for iteration in [10, 1000, 1_000_000] {
+                let pictures = single_iterations(&world, &method, iteration, 0..60);
+                let mean = |picture: Vec<f64>| picture.iter().sum::<f64>() / picture.len() as f64;
+                let test: MeanTest = pictures.into_iter().map(mean).collect();
+                let name = format!("iteration {iteration}, {direct:?}, {final_gather:?}");
+                judge(&name, &test.within(exact, ROUNDING));
+            }
         }
     }
 }

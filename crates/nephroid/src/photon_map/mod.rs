@@ -21,6 +21,8 @@ mod estimate_tests;
 #[cfg(test)]
 mod index_tests;
 #[cfg(test)]
+mod part_tests;
+#[cfg(test)]
 mod testing;
 
 pub use beams::{Beam, BeamMap, BeamWidth, Beams};

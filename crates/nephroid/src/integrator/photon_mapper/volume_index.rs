@@ -15,8 +15,8 @@ impl VolumeIndex {
                 Self::Points(VolumeMap::build_narrow(points, config.volume_neighbours(), blur))
             }
             InMedia::Beams(beams) => {
-                let k = config.beam_crossings * blur.factor(1);
-                Self::Beams(BeamMap::build(beams, BeamWidth::Crossing { k }))
+                let width = BeamWidth::Crossing { k: config.beam_crossings };
+                Self::Beams(BeamMap::build_narrow(beams, width, blur))
             }
         }
     }

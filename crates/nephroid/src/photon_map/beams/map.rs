@@ -2,6 +2,7 @@ use super::block::Block;
 use super::pieces::Pieces;
 use super::{Beam, BeamWidth, Beams};
 use crate::bvh::{Kind, Tree};
+use crate::photon_map::Blur;
 
 /// The largest sine at which a beam may count as nearly parallel to a ray.
 const MOST_PARALLEL: f32 = 0.125;
@@ -26,10 +27,16 @@ impl BeamMap {
     ///
     /// Beams that are not finite or have no length are kept but never found. Panics with 2³² beams or more.
     pub fn build(beams: Beams, width: BeamWidth) -> Self {
+        Self::build_narrow(beams, width, Blur::WHOLE)
+    }
+
+    /// As [`Self::build`], with beams narrower: each is blurred in one dimension. That comes after the largest radius
+    /// has its say, else few beams would never narrow.
+    pub fn build_narrow(beams: Beams, width: BeamWidth, blur: Blur) -> Self {
         assert!(u32::try_from(beams.stored()).is_ok(), "a map holds fewer than 2^32 beams");
         let emitted = beams.emitted();
         let beams = beams.into_shares();
-        let radius = width.radius(&beams);
+        let radius = width.radius(&beams) * blur.factor(1);
         let pieces = Pieces::new(&beams, radius);
         let mut blocks = Vec::with_capacity(pieces.pieces.len() / 4);
         let leaf = |_, numbers: &[u32]| {

@@ -5,8 +5,8 @@ use super::{Beam, BeamMap, BeamWidth, Beams};
 use crate::bvh::Simd;
 use crate::color::Rgb;
 use crate::math::{Frame, Ray, Vec2, Vec3, warp};
-use crate::photon_map::Kernel;
 use crate::photon_map::testing::Rng;
+use crate::photon_map::{Blur, Kernel};
 
 /// Beams from all over the walls of a box of side 2 to where they leave it.
 fn across_a_box(n: usize, rng: &mut Rng) -> Vec<Beam> {
@@ -187,5 +187,22 @@ fn a_few_beams_are_not_spread_over_the_scene() {
         assert!(map.radius() > 0.0 && map.radius() <= most, "{}", map.radius());
         let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
         assert!(total(&map, &ray, 3.0, Kernel::Box).is_finite());
+    }
+}
+
+/// In a series beams narrow from the radius of the first iteration on, also where that is the largest there may be.
+#[test]
+fn few_beams_narrow_like_many() {
+    let mut rng = Rng::new(9);
+    for count in [3, 3000] {
+        let beams: Vec<Beam> = (0..count).map(|i| beam(i, rng.point(), direction(&mut rng), 1.0)).collect();
+        let radius = |iteration| {
+            let blur = Blur::of_iteration(iteration);
+            let beams = Beams::new(1, beams.clone());
+            BeamMap::build_narrow(beams, BeamWidth::Crossing { k: 50.0 }, blur).radius()
+        };
+        let whole = BeamMap::build(Beams::new(1, beams.clone()), BeamWidth::Crossing { k: 50.0 }).radius();
+        assert_eq!(radius(0), whole);
+        assert!((radius(31) / whole - 0.5).abs() < 1e-6, "{count}: {} of {whole}", radius(31));
     }
 }
