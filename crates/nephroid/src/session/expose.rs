@@ -42,16 +42,6 @@ impl Exposed {
         }
     }
 
-    /// Adds what light paths brought.
-    pub fn add(&mut self, light: &Brought) {
-        match self {
-            Self::Picture(exposure) => light.add_to(exposure.sums.iter_mut(), &mut exposure.total),
-            Self::WithAovs(exposure) => {
-                light.add_to(exposure.sums.iter_mut().map(|(sum, _)| sum), &mut exposure.total);
-            }
-        }
-    }
-
     /// Adds it to films.
     pub fn add_to(&self, film: &mut Film, aovs: Option<&mut AovFilm>) {
         match self {
