@@ -70,6 +70,10 @@ pub fn choose(
     for warning in &warnings {
         messages.diagnostic(warning);
     }
+    if request.name != "ppm" {
+        // Numbers that suit one pass are no reason not to plan.
+        draft.forget_what_came_in();
+    }
     for (parameter, value) in flags.iter() {
         // Checked when the command line was read.
         parameter.set(&mut draft, value).map_err(Failure::Usage)?;
@@ -194,11 +198,10 @@ pub fn describe(method: &Method) -> Value {
         Method::PhotonMapper(config) => {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(config))));
         }
-        Method::Ppm(PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel }) => {
+        Method::Ppm(PpmConfig { mapper, plan_photons, plan_neighbours, .. }) => {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
             object.insert("plan_photons".to_owned(), json!(plan_photons));
             object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
-            object.insert("samples_per_pass".to_owned(), json!(samples_per_pixel));
         }
         Method::Path(PathConfig { max_depth, direct_lights, .. }) => {
             let config = nephroid::integrator::PhotonMapperConfig {

@@ -24,6 +24,11 @@ pub struct Draft {
 }
 
 impl Draft {
+    /// Has all that came in count as if it were the default.
+    pub fn forget_what_came_in(&mut self) {
+        self.given.clear();
+    }
+
     /// Whether a parameter came in.
     pub fn has(&self, name: &str) -> bool {
         self.given.contains(&name)

@@ -145,7 +145,7 @@ impl<'w> Inspector<'w> {
         let volumes = Maps::volumes(world, config, &plan.photons, &turn, observer)?;
         let maps = Maps::new([global, caustic, afterglow, haze], volumes, turn.blur, Ledger::default());
         let (given, method) = (self.guides.take(), &self.settings.method);
-        self.guides = Some(Guides::of_turn(given, world, method, &maps, &turn));
+        self.guides = Guides::of_turn(given, world, method, &maps, &turn, observer);
         Some((maps, [of_global, of_caustic, of_afterglow, of_haze]))
     }
 

@@ -95,7 +95,7 @@ impl Payload {
     /// `number` is the photon's in its pass: the key of chance, so that neither the order of the map
     /// nor a scale of power that is a power of two changes the rounding.
     pub fn new(photon: &Photon, number: u32) -> Self {
-        let (mantissas, exponent) = encode_power(photon.power, number);
+        let (mantissas, exponent) = encode_power(photon.power, number, photon.wi);
         Self {
             normal: encode_direction(photon.normal),
             depth: photon.depth,
@@ -136,7 +136,10 @@ impl Payload {
 }
 
 /// Mantissas m and exponent e of a power: it is about m 2^(e − 134).
-pub(super) fn encode_power(power: Rgb, number: u32) -> ([u8; 3], u8) {
+///
+/// What they are rounded by follows from the photon's number and direction, so that maps do not repeat one another, whatever the
+/// scale of the scene.
+pub(super) fn encode_power(power: Rgb, number: u32, wi: Vec3) -> ([u8; 3], u8) {
     let power = [power.r, power.g, power.b].map(|p| if p > 0.0 { p } else { 0.0 });
     let largest = power.into_iter().fold(0.0, f32::max).min(f32::MAX);
     let mut exponent = (largest.to_bits() >> 23).max(LEAST);
@@ -145,7 +148,9 @@ pub(super) fn encode_power(power: Rgb, number: u32) -> ([u8; 3], u8) {
     exponent += u32::from(f64::from(largest) * per_scale(exponent) > 255.0);
     exponent = exponent.min(254);
     let per_scale = per_scale(exponent);
-    let chance = Key::new(0, 0, Stream::Rounding).with(u64::from(number)).hash();
+    let [x, y, z] = wi.to_array().map(|v| u64::from(v.to_bits()));
+    let named = u64::from(number) << 32 ^ y << 16 ^ z;
+    let chance = Key::new(0, x, Stream::Rounding).with(named).hash();
     let mantissa = |channel: usize| {
         let exact = f64::from(power[channel]) * per_scale;
         let u = (chance >> (21 * channel) & 0x1f_ffff) as f64 / f64::from(1 << 21);
@@ -232,7 +237,7 @@ mod tests {
         let mut random = || Rgb { r: rng.next() + 1e-3, g: rng.next() + 1e-3, b: rng.next() + 1e-3 };
         let all = (0..20).map(|i| random() * [1e-30, 1e-3, 1.0, 1e20][i % 4]);
         let deviations = |p: Rgb| {
-            let (_, exponent) = encode_power(p, 0);
+            let (_, exponent) = encode_power(p, 0, Vec3::ZERO);
             [p.r, p.g, p.b].map(|c| {
                 let exact = f64::from(c) / f64::from(f32::from_bits((u32::from(exponent) - BIAS) << 23));
                 let up = exact - exact.floor();
@@ -263,7 +268,7 @@ mod tests {
     #[test]
     fn rounding_to_the_nearest_would_be_found_out() {
         let nearest = |power: Rgb, _| {
-            let (_, exponent) = encode_power(power, 0);
+            let (_, exponent) = encode_power(power, 0, Vec3::ZERO);
             let scale = f32::from_bits((u32::from(exponent) - BIAS) << 23);
             let round = |p: f32| (p / scale).round() * scale;
             Rgb { r: round(power.r), g: round(power.g), b: round(power.b) }

@@ -47,7 +47,7 @@ pub(crate) fn camera_pass_of(
 pub struct RenderSettings {
     /// The integrator.
     pub method: Method,
-    /// Camera samples of each pixel in each iteration.
+    /// Camera samples of each pixel in each iteration; progressive methods plan their own.
     pub samples_per_pixel: u32,
     /// Everything random follows from it.
     pub seed: u64,
@@ -102,17 +102,27 @@ impl<'w> Session<'w> {
         self
     }
 
-    /// Begins at a place further on, for a render that is shared out or was interrupted.
+    /// Begins at a place further on, for a render that is shared out or was interrupted. Parts join to the bits of the
+    /// whole if they meet at the ends of steps, as [`Self::place`] tells them, or of iterations.
     #[must_use]
     pub fn starting_at(mut self, place: Place) -> Self {
         (self.place, self.maps) = (place, None);
         self
     }
 
-    /// Goes on with the films of what was rendered before.
+    /// Goes on with the films of what was rendered before, which must have the values that [`Self::with_aovs`] asked for.
     pub fn with_films(mut self, film: Film, aovs: Option<AovFilm>) -> Result<Self, MergeError> {
         // Nothing is in this session's own.
         self.film.merge(&film)?;
+        match (&mut self.aovs, &aovs) {
+            (None, None) => {}
+            (Some(own), Some(given)) => own.merge(given)?,
+            (own, given) => {
+                let values = |aovs: Option<&AovFilm>| aovs.map_or(Vec::new(), |aovs| aovs.aovs().to_vec());
+                let (first, second) = (values(own.as_ref()), values(given.as_ref()));
+                return Err(MergeError::Values { first, second });
+            }
+        }
         (self.film, self.aovs) = (film, aovs);
         Ok(self)
     }
@@ -209,7 +219,7 @@ impl<'w> Session<'w> {
             self.statistics.count(&maps, &mut self.ledger);
             let given = self.guides.take();
             let method = &self.settings.method;
-            self.guides = Some(Guides::of_turn(given, world, method, &maps, &turn));
+            self.guides = Guides::of_turn(given, world, method, &maps, &turn, observer);
             self.maps = Some(maps);
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
@@ -224,8 +234,8 @@ impl<'w> Session<'w> {
     /// Adds a pass to the film if it is whole.
     fn take(&mut self, exposed: Exposed) -> bool {
         let (total, complete) = exposed.total();
-        self.statistics.picture.append(total);
         if complete {
+            self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
         } else {
             self.torn = Some(exposed);

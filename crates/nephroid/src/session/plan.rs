@@ -30,7 +30,7 @@ impl RenderPlan {
             }
             Method::Ppm(config) => {
                 let _work = Work::begin(observer, Phase::Pilot, 1);
-                let (photons, camera) = progressive::plan(world, config, settings.seed);
+                let (photons, camera) = progressive::plan(world, config, settings.seed, observer);
                 Self { photons, camera }
             }
             Method::Path(_) | Method::LightTracer(_) => {

@@ -6,6 +6,7 @@ use super::guide::{Facing, Guide};
 use super::{Maps, Turn};
 use crate::integrator::{Method, progressive};
 use crate::math::Vec3;
+use crate::observer::Observer;
 use crate::photon_map::{Bandwidth, GridTree, Kernel, NearestList, PhotonIndex, PhotonMap, Query, gather};
 use crate::world::World;
 
@@ -38,14 +39,22 @@ impl Guides {
         Self::new(&PhotonMap::build(crate::photon_map::Photons::default()))
     }
 
-    /// Those of an iteration: of its own photons, or in a series of iterations those that the first was given.
-    pub fn of_turn(given: Option<Self>, world: &World, method: &Method, maps: &Maps, turn: &Turn) -> Self {
-        match (method, given) {
+    /// Those of an iteration: of its own photons, or in a series of iterations those that the first was given. `None`
+    /// if the observer cancelled.
+    pub fn of_turn(
+        given: Option<Self>,
+        world: &World,
+        method: &Method,
+        maps: &Maps,
+        turn: &Turn,
+        observer: &dyn Observer,
+    ) -> Option<Self> {
+        Some(match (method, given) {
             _ if !turn.gathers => Self::none(),
             (Method::Ppm(_), Some(guides)) => guides,
-            (Method::Ppm(config), None) => progressive::guides(world, config, turn.seed),
+            (Method::Ppm(config), None) => progressive::guides(world, config, turn.seed, observer)?,
             _ => Self::new(&maps.global),
-        }
+        })
     }
 
     /// Makes the guides of a map.

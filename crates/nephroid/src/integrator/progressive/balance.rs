@@ -23,8 +23,8 @@ const PHOTONS: [f64; 2] = [20_000.0, 4_000_000.0];
 /// blur less.
 const LEAST_FOR_PHOTONS: f64 = 0.25;
 
-/// Paths of a map that trials found empty.
-const PATHS_IN_VAIN: u64 = 4096;
+/// And at most so many times that, however much photons vary or how few of them are found.
+const MOST_FOR_PHOTONS: f64 = 8.0;
 
 /// The share of pixels whose variance is left out, where it is largest: one lucky sample must not decide.
 const LEFT_OUT: f64 = 0.01;
@@ -81,6 +81,17 @@ fn trimmed_mean(mut values: Vec<f64>) -> f64 {
     values[..kept].iter().sum::<f64>() / kept.max(1) as f64
 }
 
+/// Whether gather rays are sent, and how many by each sample that reads the maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum GatherRays {
+    /// None: all maps are read on the spot.
+    None,
+    /// As many as are worth it.
+    Planned,
+    /// So many.
+    Asked(u32),
+}
+
 /// What to do in each iteration of a picture of so many pixels, after a trial of `tried`.
 ///
 /// An iteration has camera units, each with some plain samples of every pixel, of which one reads the maps and sends
@@ -91,24 +102,29 @@ pub(super) fn balance(
     variances: &Variances,
     costs: [f64; 3],
     tried: &PhotonPlan,
-    gathers: bool,
+    rays: GatherRays,
     pixels: u64,
 ) -> ([f64; 4], CameraPlan) {
     let [plain, reading, gathering] = costs;
     let [v_plain, v_gathered, v_caustic, v_medium] = variances.of_sample.map(|v| v.max(1e-9));
     let v_plain = v_plain + v_medium;
     let share = |v: f64, cost: f64| (v / cost.max(1e-3)).sqrt();
-    let (samples, reads) = (share(v_plain, plain), share(v_caustic, reading));
-    let rays = if gathers { share(v_gathered, gathering) } else { 0.0 };
+    let gathers = rays != GatherRays::None;
+    // What is read on the spot.
+    let v_read = if gathers { v_caustic } else { v_caustic + v_gathered };
+    let (samples, reads) = (share(v_plain, plain), share(v_read, reading));
+    let wanted = if gathers { share(v_gathered, gathering) } else { 0.0 };
     // Where rays or look-ups are wanted more than samples, each sample reads and sends some.
-    let stride = [4, 2].into_iter().find(|s| samples >= f64::from(*s) * reads.max(rays)).unwrap_or(1);
+    let stride = [4, 2].into_iter().find(|s| samples >= f64::from(*s) * reads.max(wanted)).unwrap_or(1);
     let per_unit = samples / f64::from(stride);
-    let gather_rays = (rays / per_unit.max(reads)).clamp(1.0, MOST_GATHER_RAYS).round();
-    let unit_cost =
-        (f64::from(stride) * plain + reading + if gathers { gather_rays * gathering } else { 0.0 })
-            * pixels as f64;
+    let gather_rays = match rays {
+        GatherRays::None => 0.0,
+        GatherRays::Planned => (wanted / per_unit.max(reads)).clamp(1.0, MOST_GATHER_RAYS).round(),
+        GatherRays::Asked(asked) => f64::from(asked.max(1)),
+    };
+    let unit_cost = (f64::from(stride) * plain + reading + gather_rays * gathering) * pixels as f64;
     let unit_variance =
-        v_plain / f64::from(stride) + v_caustic + if gathers { v_gathered / gather_rays } else { v_gathered };
+        v_plain / f64::from(stride) + v_read + if gathers { v_gathered / gather_rays } else { 0.0 };
     let [_, of_global, of_caustic, of_media] = variances.of_maps;
     let maps = [
         (tried.global, of_global),
@@ -125,19 +141,21 @@ pub(super) fn balance(
         let v = maps[i].1.max(0.01 * unit_variance) * LATER;
         if costs[i] > 0.0 { (v * unit_cost / (unit_variance * costs[i])).sqrt() } else { 0.0 }
     });
-    let photon_cost: f64 = costs.iter().zip(&factors).map(|(cost, factor)| cost * factor).sum();
-    if photon_cost > 0.0 {
-        let more = (LEAST_FOR_PHOTONS * unit_cost / photon_cost).max(1.0);
-        factors = factors.map(|factor| factor * more);
+    let sum = |of: &dyn Fn(usize) -> f64| (0..maps.len()).map(of).sum::<f64>();
+    let photon_cost = sum(&|i| costs[i] * factors[i]);
+    let total = sum(&|i| maps[i].0.expected_photons as f64 * factors[i]);
+    let mut units = 1.0;
+    if total > 0.0 {
+        let most_units = f64::from((MOST_SAMPLES / stride).max(1));
+        units = (PHOTONS[0] / total).ceil().clamp(1.0, most_units);
+        let least = LEAST_FOR_PHOTONS * unit_cost / photon_cost;
+        let most = MOST_FOR_PHOTONS * unit_cost / photon_cost;
+        let of_a_unit = (PHOTONS[0] / (units * total)).max(least).max(1.0).min(most);
+        let scale = (units * of_a_unit).min(PHOTONS[1] / total);
+        factors = factors.map(|factor| factor * scale);
     }
-    let total: f64 = maps.iter().zip(&factors).map(|((map, _), f)| map.expected_photons as f64 * f).sum();
-    let most_units = (MOST_SAMPLES / stride).max(1);
-    let units = if total > 0.0 { (PHOTONS[0] / total).ceil().clamp(1.0, f64::from(most_units)) } else { 1.0 };
-    let scale = if total > 0.0 { (units * total).clamp(PHOTONS[0], PHOTONS[1]) / total } else { 1.0 };
-    for (factor, (map, _)) in factors.iter_mut().zip(&maps) {
-        let in_vain = PATHS_IN_VAIN.min(map.paths) as f64 / map.paths.max(1) as f64;
-        *factor = if map.expected_photons == 0 { in_vain } else { *factor * scale };
-    }
+    // A map that trials found empty is tried in each iteration, too.
+    let factors = [0, 1, 2, 3].map(|i| if maps[i].0.expected_photons == 0 { 1.0 } else { factors[i] });
     let camera = CameraPlan {
         samples_per_pixel: units as u32 * stride,
         stride,

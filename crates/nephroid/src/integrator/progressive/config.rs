@@ -16,7 +16,7 @@ pub struct PpmConfig {
     pub plan_photons: bool,
     /// Whether the neighbours of an estimate follow from the number of photons, and not from `mapper`.
     pub plan_neighbours: bool,
-    /// Camera samples of each pixel in an iteration, if not as many as a pilot finds best.
+    /// Camera samples of each pixel in an iteration, up to 65 536, if not as many as a pilot finds best.
     pub samples_per_pixel: Option<u32>,
 }
 

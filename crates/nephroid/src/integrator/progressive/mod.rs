@@ -1,6 +1,6 @@
 //! Progressive photon mapping in its memoryless form (Knaus and Zwicker 2011, doi 10.1145/1966394.1966404): iterations
 //! of the photon mapper, each with few photons of its own and estimates that are narrower than those of the one
-//! before. Their mean converges, and each is independent of all others.
+//! before. Their mean converges. Each follows from its index, so none waits for another.
 
 mod balance;
 mod config;
@@ -9,15 +9,30 @@ mod trial;
 pub use config::PpmConfig;
 
 use super::photon_mapper::{CameraPlan, FinalGather, Guides, Maps, Turn};
-use crate::observer::Silent;
+use crate::observer::Observer;
 use crate::photon_map::Blur;
 use crate::sampling::{Key, Stream};
-use crate::transport::PhotonPlan;
+use crate::transport::{MapPlan, PhotonPlan};
 use crate::world::World;
-use balance::{Variances, balance};
+use balance::{GatherRays, Variances, balance};
 
-/// Photons wanted in each map of a trial.
+/// Photons wanted in each map of a trial …
 const TRIAL_PHOTONS: u64 = 30_000;
+
+/// … for which at most so many times the paths are emitted.
+const TRIAL_EMIT_MAX: u64 = 10;
+
+/// Paths for a map that trials found empty: in trials, and in each iteration.
+const PATHS_IN_VAIN: u64 = 4096;
+
+/// Stops, but tells nothing: what is tried is no part of the render.
+struct Quiet<'a>(&'a dyn Observer);
+
+impl Observer for Quiet<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}
 
 /// The seed of what is tried before a render.
 fn pilot_seed(seed: u64) -> u64 {
@@ -27,46 +42,71 @@ fn pilot_seed(seed: u64) -> u64 {
 /// The photons of trials.
 fn trial_photons(world: &World, config: &PpmConfig, seed: u64) -> PhotonPlan {
     let mut targets = config.mapper.targets();
-    if config.plan_photons {
-        for wanted in [&mut targets.global, &mut targets.caustic, &mut targets.volume] {
-            *wanted = (*wanted).min(TRIAL_PHOTONS);
+    for wanted in [&mut targets.global, &mut targets.caustic, &mut targets.volume] {
+        *wanted = (*wanted).min(TRIAL_PHOTONS);
+    }
+    targets.emit = None;
+    targets.emit_max = targets.emit_max.min(TRIAL_EMIT_MAX);
+    let mut plan = PhotonPlan::by_pilot(world, &config.mapper.walk_settings(), &targets, seed);
+    let maps = [&mut plan.global, &mut plan.caustic, &mut plan.volume, &mut plan.volume_caustic];
+    for MapPlan { paths, expected_photons, limited } in maps {
+        *limited = false;
+        if *expected_photons == 0 {
+            *paths = (*paths).min(PATHS_IN_VAIN);
         }
     }
-    PhotonPlan::by_pilot(world, &config.mapper.walk_settings(), &targets, seed)
+    plan
 }
 
-/// What to do in each iteration.
-pub(crate) fn plan(world: &World, config: &PpmConfig, seed: u64) -> (PhotonPlan, CameraPlan) {
+/// What to do in each iteration; whatever it is, where the observer cancels.
+pub(crate) fn plan(
+    world: &World,
+    config: &PpmConfig,
+    seed: u64,
+    observer: &dyn Observer,
+) -> (PhotonPlan, CameraPlan) {
     let tried = trial_photons(world, config, seed);
-    let gathers = config.mapper.camera_plan(1).gather_rays.is_some();
+    let rays = match (config.mapper.camera_plan(1).gather_rays, config.mapper.final_gather) {
+        (None, _) => GatherRays::None,
+        (Some(_), FinalGather::Rays(asked)) => GatherRays::Asked(asked),
+        (Some(_), _) => GatherRays::Planned,
+    };
     let camera = CameraPlan {
-        gather_rays: gathers.then_some(1),
+        gather_rays: (rays != GatherRays::None).then_some(1),
         neighbours: config.neighbours(&tried),
         ..CameraPlan::default()
     };
-    let found = trial::trial(world, config, &tried, &camera, pilot_seed(seed));
+    let found = trial::trial(world, config, &tried, &camera, pilot_seed(seed), &Quiet(observer));
     let window = world.scene().film.window();
     let pixels = u64::from(window.width) * u64::from(window.height);
     let variances = Variances::of(&found.pixels);
-    let (factors, mut camera) = balance(&variances, found.costs, &tried, gathers, pixels);
+    let (factors, mut camera) = balance(&variances, found.costs, &tried, rays, pixels);
+    let walks = config.mapper.walk_settings();
     let photons = match config.plan_photons {
-        true => tried.scaled(world, &config.mapper.walk_settings(), factors),
-        false => tried,
+        true => tried.scaled(world, &walks, factors),
+        false => PhotonPlan::by_pilot(world, &walks, &config.mapper.targets(), seed),
     };
     camera.neighbours = config.neighbours(&photons);
-    if let (FinalGather::Rays(asked), true) = (config.mapper.final_gather, gathers) {
-        camera.gather_rays = Some(asked);
-    }
     if let Some(samples) = config.samples_per_pixel {
-        camera.samples_per_pixel = samples.max(1).next_multiple_of(camera.stride);
+        camera.samples_per_pixel = samples.clamp(1, 1 << 16);
+        // Those that read the maps are the same number of all.
+        while !camera.samples_per_pixel.is_multiple_of(camera.stride) {
+            camera.stride /= 2;
+        }
     }
     (photons, camera)
 }
 
 /// Guides for the gather rays of all iterations, from photons of their own: made once, for any guide is good
-/// everywhere.
-pub(crate) fn guides(world: &World, config: &PpmConfig, seed: u64) -> Guides {
+/// everywhere. `None` if the observer cancelled.
+pub(crate) fn guides(
+    world: &World,
+    config: &PpmConfig,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Option<Guides> {
     let turn = Turn { seed: pilot_seed(seed), iteration: 0, gathers: true, blur: Blur::WHOLE };
-    let maps = Maps::build(world, &config.mapper, &trial_photons(world, config, seed), &turn, &Silent);
-    maps.map_or_else(Guides::none, |maps| Guides::new(&maps.global))
+    let photons = trial_photons(world, config, seed);
+    let maps = Maps::build(world, &config.mapper, &photons, &turn, &Quiet(observer))?;
+    Some(Guides::new(&maps.global))
 }

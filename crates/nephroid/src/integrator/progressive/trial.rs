@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::film::FilterSampler;
 use crate::integrator::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, Turn};
 use crate::integrator::{Components, Estimator, LightPart, LookUp, Met, Passed, Probe};
-use crate::observer::Silent;
+use crate::observer::Observer;
 use crate::photon_map::{Blur, Gathered, NearestList};
 use crate::transport::{PhotonPlan, PixelSample, pixel_key};
 use crate::world::World;
@@ -46,6 +46,7 @@ pub(super) fn trial(
     plan: &PhotonPlan,
     camera: &CameraPlan,
     seed: u64,
+    observer: &dyn Observer,
 ) -> Trial {
     let window = world.scene().film.window();
     let filter = FilterSampler::new(world.scene().film.filter);
@@ -66,7 +67,7 @@ pub(super) fn trial(
     for set in 0..SETS {
         let turn =
             Turn { seed, iteration: set as u64, gathers: camera.gather_rays.is_some(), blur: Blur::WHOLE };
-        let Some(maps) = Maps::build(world, &config.mapper, plan, &turn, &Silent) else { return trial };
+        let Some(maps) = Maps::build(world, &config.mapper, plan, &turn, observer) else { return trial };
         let guides = if turn.gathers { Guides::new(&maps.global) } else { Guides::none() };
         let mapper = PhotonMapper::new(world, &config.mapper, &maps, &guides, camera);
         let estimate = |scratch: &mut NearestList, i: u64| {

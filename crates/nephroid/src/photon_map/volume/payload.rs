@@ -17,7 +17,7 @@ pub(super) struct VolumePayload {
 impl VolumePayload {
     /// `number` is the photon's in its pass: the key of chance, as on surfaces.
     pub fn new(photon: &VolumePhoton, share: f32, number: u32) -> Self {
-        let (mantissas, exponent) = encode_power(photon.power * share, number);
+        let (mantissas, exponent) = encode_power(photon.power * share, number, photon.wi);
         Self {
             wi: encode_direction(photon.wi),
             depth: photon.depth,
