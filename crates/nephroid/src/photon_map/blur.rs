@@ -29,8 +29,10 @@ impl Blur {
         libm::pow(iteration as f64 + 1.0, -1.0 / (4.0 + f64::from(dimensions))) as f32
     }
 
-    /// A bandwidth of the first iteration, narrower; that of no series stays as it is. Estimates look for fewer photons, in the same proportion as their
-    /// area or volume, and from some on take a part of the radius at which these lie.
+    /// A bandwidth of the first iteration, narrower; that of no series stays as it is.
+    ///
+    /// Estimates look for fewer photons, in the same proportion as their area or volume, and from some on take a part
+    /// of the radius at which these lie.
     pub fn narrow(self, bandwidth: Bandwidth, dimensions: u32) -> Bandwidth {
         let factor = self.factor(dimensions);
         match bandwidth {
