@@ -12,8 +12,9 @@ pub struct PixelSum {
     pub luminance_sq: f64,
     /// Σ w, the weights of the reconstruction filter.
     pub weight: f64,
-    /// Independent estimates that the variance may count on. Samples that share a photon map make
-    /// one estimate together: see [`PixelSum::as_one_estimate`].
+    /// Estimates that the variance counts as independent. Samples of a progressive iteration and of a step of light
+    /// tracing make one together: see [`PixelSum::as_one_estimate`]. Those of the photon mapper count each, though
+    /// they share the photons of a map.
     pub samples: u32,
 }
 

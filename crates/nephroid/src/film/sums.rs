@@ -156,7 +156,8 @@ impl Film {
     }
 
     /// Variance of each pixel's luminance in [`Film::develop`], row by row, as estimated from the
-    /// spread of its independent estimates; infinite where there are fewer than two.
+    /// spread of its [estimates](PixelSum::samples); infinite where there are fewer than two. For the photon mapper it
+    /// leaves out what the samples that read one map have in common, the noise of its photons.
     ///
     /// With negative filter weights this is an upper estimate: it takes no advantage of light and
     /// weight varying together.
