@@ -137,9 +137,9 @@ fn headers_that_make_no_sense_are_refused() {
     }
     assert_eq!(
         changed("width", json!(70_000)),
-        "claims to have 70000×2 pixels; from 1 to 65536 on a side and 268435456 in all are possible"
+        "is of 70000×2 pixels; from 1 to 65536 on a side and 268435456 in all are possible"
     );
-    assert!(changed("height", json!(0)).starts_with("claims to have 3×0 pixels"));
+    assert!(changed("height", json!(0)).starts_with("is of 3×0 pixels"));
     assert_eq!(
         changed("aovs", json!(["direct", "colour"])),
         "has the values `colour`, which this program does not know: use the one that wrote it"
@@ -175,13 +175,19 @@ fn units_that_no_film_has_are_refused() {
 }
 
 #[test]
-fn later_versions_are_refused() {
+fn other_versions_are_refused() {
     let mut bytes = bytes_of(&small());
-    bytes[8] = 2;
+    bytes[8] = 3;
     assert_eq!(
         message(&bytes),
-        "has version 2 of the format, but this program reads up to 1: use the program that wrote it, or a \
+        "has version 3 of the format, but this program reads up to 2: use the program that wrote it, or a \
          newer one"
+    );
+    bytes[8] = 1;
+    assert_eq!(
+        message(&bytes),
+        "has version 1 of the format, but this program reads from 2 on: use the program that wrote it, or \
+         render again"
     );
 }
 

@@ -46,6 +46,14 @@ pub enum FilmFileProblem {
         /// The file's version.
         version: u32,
     },
+    /// Written by an earlier program.
+    #[error(
+        "has version {version} of the format, but this program reads from {VERSION} on: use the program that wrote it, or render again"
+    )]
+    TooOld {
+        /// The file's version.
+        version: u32,
+    },
     /// The file ends too early.
     #[error("is cut off: it ends after {at} bytes, before it is complete; copy it again, or render again")]
     CutOff {
@@ -73,14 +81,14 @@ pub enum FilmFileProblem {
     /// A header that does not say what it should.
     #[error("makes no sense: in its header, {0}")]
     Header(String),
-    /// More pixels than are ever read, or none.
+    /// More pixels than are ever read or written, or none.
     #[error(
-        "claims to have {width}×{height} pixels; from 1 to {MAX_SIDE} on a side and {MAX_PIXELS} in all are possible"
+        "is of {width}×{height} pixels; from 1 to {MAX_SIDE} on a side and {MAX_PIXELS} in all are possible"
     )]
     Size {
-        /// As declared.
+        /// Of the film, or as a file declares it.
         width: u64,
-        /// As declared.
+        /// Of the film, or as a file declares it.
         height: u64,
     },
     /// A value beside the picture of which nothing is known here.

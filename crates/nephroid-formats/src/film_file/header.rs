@@ -88,11 +88,7 @@ impl FilmHeader {
             job: fields.get("job", "", |v| Some(v.clone()))?,
             aovs: fields.get("aovs", "names", |v| list(v, |name| Some(name.as_str()?.to_owned())))?,
         };
-        let (width, height) = (u64::from(header.width), u64::from(header.height));
-        let sides = 1..=MAX_SIDE;
-        if !sides.contains(&width) || !sides.contains(&height) || width * height > MAX_PIXELS {
-            return Err(FilmFileProblem::Size { width, height });
-        }
+        check_size(header.width, header.height)?;
         Ok(header)
     }
 
@@ -105,6 +101,16 @@ impl FilmHeader {
         }
         Ok(aovs)
     }
+}
+
+/// Whether a film of this size is read and written.
+pub(super) fn check_size(width: u32, height: u32) -> Result<(), FilmFileProblem> {
+    let (width, height) = (u64::from(width), u64::from(height));
+    let sides = 1..=MAX_SIDE;
+    if !sides.contains(&width) || !sides.contains(&height) || width * height > MAX_PIXELS {
+        return Err(FilmFileProblem::Size { width, height });
+    }
+    Ok(())
 }
 
 /// The members of the object.

@@ -91,6 +91,7 @@ fn read_start(bytes: &[u8]) -> Result<(FilmHeader, Frames<'_>), FilmFileProblem>
         None => return Err(cut_off(bytes)),
         Some(VERSION) => {}
         Some(0) => return Err(FilmFileProblem::Damaged { section: Section::Header }),
+        Some(version @ ..VERSION) => return Err(FilmFileProblem::TooOld { version }),
         Some(version) => return Err(FilmFileProblem::TooNew { version }),
     }
     let mut frames = Frames::new(bytes, START);

@@ -128,6 +128,36 @@ fn extreme_sums_come_back_and_take_sixty_bytes_a_pixel() {
 }
 
 #[test]
+fn a_film_of_no_values_is_none() {
+    let file = film_of(&[0], false);
+    let empty = AovFilm::with_unit(53, 41, -3, &[]);
+    let mut bytes = Vec::new();
+    encode_film(&mut bytes, &file.header, &file.film, Some(&empty)).unwrap();
+    assert_eq!(read_film_bytes(&bytes).unwrap(), file);
+}
+
+#[test]
+fn sizes_that_are_not_read_are_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.film");
+    for (width, height) in [(65_537, 1), (1, 65_537), (0, 3), (3, 0)] {
+        let film = Film::new(width, height);
+        let expected = format!(
+            "is of {width}×{height} pixels; from 1 to 65536 on a side and 268435456 in all are possible"
+        );
+        let error = write_film(&path, &FilmHeader::default(), &film, None).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}: {expected}", path.display()));
+        assert!(names(folder.path()).is_empty());
+        let mut bytes = Vec::new();
+        let error = encode_film(&mut bytes, &FilmHeader::default(), &film, None).unwrap_err();
+        assert_eq!((error.to_string(), bytes.len()), (expected, 0));
+    }
+    let film = Film::new(65_536, 1);
+    write_film(&path, &FilmHeader::default(), &film, None).unwrap();
+    assert_eq!(read_film(&path).unwrap().film, film);
+}
+
+#[test]
 fn the_header_says_what_the_film_is() {
     let mut file = film_of(&[0], true);
     let good = file.header.clone();

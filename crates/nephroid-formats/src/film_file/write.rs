@@ -5,6 +5,7 @@ use nephroid::film::{AovFilm, Film, PixelTotal};
 
 use super::columns::pack;
 use super::frame::FrameWriter;
+use super::header::check_size;
 use super::{BLOCK, FilmFileError, FilmFileProblem, FilmHeader, MAGIC, VERSION};
 use crate::image::stream_atomically;
 
@@ -16,6 +17,8 @@ pub fn write_film(
     film: &Film,
     aovs: Option<&AovFilm>,
 ) -> Result<(), FilmFileError> {
+    let size = check_size(film.width(), film.height());
+    size.map_err(|problem| FilmFileError { path: path.to_owned(), problem })?;
     let written = stream_atomically(path, |to| encode_film(to, header, film, aovs));
     written
         .map_err(|e| FilmFileError { path: e.path, problem: FilmFileProblem::Write { problem: e.problem } })
@@ -24,13 +27,17 @@ pub fn write_film(
 /// Writes the bytes of a film file.
 ///
 /// # Errors
-/// Those of the writer, and one if the further values are of a picture of another size or unit.
+/// Those of the writer, and one if the picture is larger than what can be read, or none, or if the further values are
+/// of a picture of another size or unit.
 pub fn encode_film(
     mut to: impl Write,
     header: &FilmHeader,
     film: &Film,
     aovs: Option<&AovFilm>,
 ) -> io::Result<()> {
+    check_size(film.width(), film.height()).map_err(io::Error::other)?;
+    // With no values there are no blocks of them.
+    let aovs = aovs.filter(|aovs| !aovs.aovs().is_empty());
     let described = |aovs: &AovFilm| (aovs.width(), aovs.height(), aovs.unit());
     if aovs.is_some_and(|aovs| described(aovs) != (film.width(), film.height(), film.unit())) {
         return Err(io::Error::other("the further values are not those of this picture"));

@@ -78,8 +78,18 @@ impl Target {
         }
         fill(&mut file).map_err(ImageProblem::Write)?;
         file.as_file().sync_all().map_err(ImageProblem::Write)?;
-        let put = file.persist(&self.file);
-        put.map(|_: File| ()).map_err(|e| ImageProblem::Write(e.error))
+        file.persist(&self.file).map_err(|e| ImageProblem::Write(e.error))?;
+        self.keep_name();
+        Ok(())
+    }
+
+    /// Has the folder's new entry outlive a loss of power, where folders can be opened. The file is in its place
+    /// already, so where this fails nothing is to be told.
+    fn keep_name(&self) {
+        #[cfg(unix)]
+        if let Ok(folder) = File::open(&self.folder) {
+            let _ = folder.sync_all();
+        }
     }
 
     fn temporary_file(&self) -> Result<NamedTempFile, ImageProblem> {

@@ -61,11 +61,11 @@ impl Signed {
     }
 }
 
-/// Sums of squares are counted in steps of 2^−36 units squared: what a small lamp that is seen brings
+/// Sums of squares are counted in steps of 2^−40 units squared: what a small lamp that is seen brings
 /// counts in full, and what is a millionth of a typical radiance does not.
-const SQUARE_FRACTION_BITS: i32 = 36;
+const SQUARE_FRACTION_BITS: i32 = 40;
 
-/// A sum of squares that has become as large as that, 2^60 units squared, tells nothing but that.
+/// A sum of squares that has become as large as that, 2^56 units squared, tells nothing but that.
 pub const SATURATED_SQUARE: u128 = u128::MAX >> 32;
 
 /// A term of a sum of squares, which must be finite and not below zero.

@@ -12,8 +12,9 @@ pub struct PixelSum {
     pub luminance_sq: f64,
     /// Σ w, the weights of the reconstruction filter.
     pub weight: f64,
-    /// Independent estimates that the variance may count on. Samples that share a photon map make
-    /// one estimate together: see [`PixelSum::as_one_estimate`].
+    /// Estimates that the variance counts as independent. Samples of a progressive iteration and of a step of light
+    /// tracing make one together: see [`PixelSum::as_one_estimate`]. Those of the photon mapper count each, though
+    /// they share the photons of a map.
     pub samples: u32,
 }
 
@@ -55,7 +56,7 @@ impl PixelSum {
 pub struct PixelTotal {
     /// Σ w·L per channel in 96 bits, in steps of 2^−48 units.
     pub radiance: [i128; 3],
-    /// Σ (w·Y)² in 96 bits, in steps of 2^−36 units squared. At its largest value it is saturated.
+    /// Σ (w·Y)² in 96 bits, in steps of 2^−40 units squared. At its largest value it is saturated.
     pub luminance_sq: u128,
     /// Σ w, in steps of 2^−32.
     pub weight: i64,
@@ -103,13 +104,17 @@ impl PixelTotal {
         self.radiance.map(|v| RADIANCE.value(v, unit) / weight)
     }
 
-    /// Variance of the mean's luminance: n/(n−1) · (Σ X² − (Σ X)²/n) / (Σ w)², X = w·Y.
+    /// Variance of the mean's luminance: n/(n−1) · (Σ X² − (Σ X)²/n) / (Σ w)², X = w·Y. Where the squares of
+    /// light are all too small to be told from 0, it is unknown.
     pub(super) fn variance(&self, unit: i32) -> f64 {
         if self.samples < 2 || self.weight == 0 {
             return f64::INFINITY;
         }
         let n = f64::from(self.samples);
         let sum = luminance(self.radiance.map(|v| RADIANCE.value(v, unit)));
+        if self.luminance_sq == 0 && sum != 0.0 {
+            return f64::INFINITY;
+        }
         let spread = (fixed::square_value(self.luminance_sq, unit) - sum * sum / n).max(0.0);
         let weight = self.weight();
         n / (n - 1.0) * spread / (weight * weight)

@@ -23,9 +23,9 @@ pub struct FilmCounts {
 /// A film has a *unit*, a power of two that should be near the radiances of its scene: see
 /// [`World::radiance_unit`](crate::world::World::radiance_unit). Radiance counts in steps of 2^−48
 /// units (3.6e-15) and an iteration may bring up to 2^32 (4.3e9) per pixel, of which 2^15 fit for
-/// certain; beyond them all but absurd ones do. Squares count in steps of 2^−36 units squared up to
-/// 2^60, so the noise of luminances between 1e-5 and 1e9 units is resolved; a sum of squares that
-/// saturates gives an infinite variance. Weights count in steps of 2^−32, which single precision
+/// certain; beyond them all but absurd ones do. Squares count in steps of 2^−40 units squared up to
+/// 2^56, so the noise of luminances between 1e-5 and 1e8 units is resolved; a sum of squares that
+/// saturates, or is 0 where there is light, gives an infinite variance. Weights count in steps of 2^−32, which single precision
 /// weights of filters are multiples of, and up to 2^16 an iteration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
@@ -156,7 +156,8 @@ impl Film {
     }
 
     /// Variance of each pixel's luminance in [`Film::develop`], row by row, as estimated from the
-    /// spread of its independent estimates; infinite where there are fewer than two.
+    /// spread of its [estimates](PixelSum::samples); infinite where there are fewer than two. For the photon mapper it
+    /// leaves out what the samples that read one map have in common, the noise of its photons.
     ///
     /// With negative filter weights this is an upper estimate: it takes no advantage of light and
     /// weight varying together.

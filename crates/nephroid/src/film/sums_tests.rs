@@ -183,14 +183,33 @@ fn radiances_of_any_scale_are_kept_with_their_noise() {
         let relative = film.variance()[0] / f64::from(scale).powi(2) / (14.0 / 12.0);
         assert!((relative - 1.0).abs() < 1e-5, "{relative} at {scale}");
     }
-    // Without a unit the same noise is lost or cut, so the test tells.
+    // Without a unit the same noise is lost, so the test tells; a pixel with light is then not free of noise.
     let mut film = Film::new(1, 1);
     for v in [1e-12, 3e-12] {
         let mut sum = PixelSum::default();
         sum.add(Rgb::splat(v), 1.0);
         film.add_iteration(&[sum]);
     }
-    assert_eq!(film.variance(), [0.0]);
+    assert_eq!(film.variance(), [f64::INFINITY]);
+}
+
+#[test]
+fn dark_pixels_are_not_free_of_noise() {
+    let film_of = |values: [f32; 2]| {
+        let mut film = Film::new(1, 1);
+        for v in values {
+            let mut sum = PixelSum::default();
+            sum.add(Rgb::splat(v), 1.0);
+            film.add_iteration(&[sum]);
+        }
+        film.variance()[0]
+    };
+    assert_eq!(film_of([0.0, 0.0]), 0.0);
+    assert_eq!(film_of([1e-7, 2e-7]), f64::INFINITY);
+    // A square of 2.25e-12 is 2.47 steps and counts as two: the variance of one sample in two, a quarter of that.
+    let variance = film_of([0.0, 1.5e-6]);
+    let exact = 1.5e-6f64.powi(2) / 4.0;
+    assert!((variance / exact - 1.0).abs() < 0.5, "{variance}, not {exact}");
 }
 
 #[test]

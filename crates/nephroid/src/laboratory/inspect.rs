@@ -36,7 +36,7 @@ pub struct Inspector<'w> {
 /// What became of a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelReport {
-    /// The pixel of the render, to the bit.
+    /// The pixel of the render, to the bit; of light tracing the camera's part alone, without what light paths bring.
     pub radiance: Rgb,
     /// The parts that it is the sum of, up to rounding.
     pub light: Components,

@@ -41,6 +41,11 @@ impl AreaEmitter {
         textures.mean(self.radiance) * (PI * self.area)
     }
 
+    /// The largest radiance that is seen of it, of any channel.
+    pub fn brightest(&self, textures: &Textures) -> f32 {
+        textures.brightest(self.radiance)
+    }
+
     /// The centre of its bounds.
     pub fn middle(&self) -> Vec3 {
         self.middle

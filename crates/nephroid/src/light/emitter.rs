@@ -223,6 +223,19 @@ impl Emitter {
         }
     }
 
+    /// The largest radiance that cameras see of its surface or sky, of any channel; 0 if it has neither.
+    pub fn brightest(&self, textures: &Textures) -> f32 {
+        match &self.kind {
+            EmitterKind::Area(area) => area.brightest(textures),
+            EmitterKind::Constant(sky) => sky.radiance.max_channel(),
+            EmitterKind::Environment(map) => map.brightest(textures),
+            EmitterKind::Point { .. }
+            | EmitterKind::Spot(_)
+            | EmitterKind::Directional { .. }
+            | EmitterKind::Medium(_) => 0.0,
+        }
+    }
+
     /// A point in the midst of it; `None` if it is infinitely far away.
     pub fn middle(&self) -> Option<Vec3> {
         match &self.kind {

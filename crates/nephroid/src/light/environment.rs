@@ -96,6 +96,11 @@ impl EnvironmentMap {
         self.mean_radiance * (4.0 * PI * self.target.silhouette())
     }
 
+    /// The largest radiance that is seen of it, of any channel.
+    pub fn brightest(&self, textures: &Textures) -> f32 {
+        textures.images[self.image].brightest() * self.scale
+    }
+
     /// Radiance seen in a world direction.
     pub fn radiance(&self, textures: &Textures, direction: Vec3) -> Rgb {
         self.texture(textures, self.to_square(direction).0)

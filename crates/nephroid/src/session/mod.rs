@@ -95,6 +95,8 @@ impl<'w> Session<'w> {
     }
 
     /// Keeps further values of each pixel; none for an empty list. The picture stays the same to the bit.
+    ///
+    /// They are those of camera samples: of light tracing, the layers of light lack what light paths bring.
     #[must_use]
     pub fn with_aovs(mut self, aovs: &[Aov]) -> Self {
         let (width, height, unit) = (self.film.width(), self.film.height(), self.film.unit());

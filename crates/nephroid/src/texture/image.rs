@@ -36,6 +36,11 @@ impl Image {
         let n = self.pixels.len().max(1) as f64;
         Rgb::from(sum.map(|s| (s / n) as f32))
     }
+
+    /// The largest value of any channel; 0 if there is none above it.
+    pub fn brightest(&self) -> f32 {
+        self.pixels.iter().fold(0.0, |largest, p| p.max_channel().max(largest))
+    }
 }
 
 /// How a bitmap is read between its pixels.

@@ -60,4 +60,13 @@ impl Textures {
             Texture::Checkerboard(board) => (self.mean(board.color0) + self.mean(board.color1)) * 0.5,
         }
     }
+
+    /// A bound on the values of all channels, which a constant and the pixels of an image reach.
+    pub fn brightest(&self, texture: Handle<Texture>) -> f32 {
+        match &self.list[texture] {
+            Texture::Constant(value) => value.max_channel(),
+            Texture::Bitmap(bitmap) => self.images[bitmap.image].brightest(),
+            Texture::Checkerboard(board) => self.brightest(board.color0).max(self.brightest(board.color1)),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The light pass: paths from the lights, each vertex of which is connected to the camera (Dutré, Lafortune and
 //! Willems 1993; Veach 1997, §8.3).
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use rayon::prelude::*;
 
@@ -18,10 +18,15 @@ use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::world::World;
 
 /// Paths that are traced as one piece of work. What they bring is joined in the order of the paths.
-const CHUNK: u64 = 512;
+const CHUNK: u64 = 64;
 
-/// Pieces of work between two joinings: few enough that what paths in thick fog bring does not fill the memory.
-const BATCH: u64 = 64;
+/// Pieces of work between two joinings: enough for many threads, and no more than are needed to keep them at work.
+const BATCH: RangeInclusive<u64> = 16..=1024;
+
+/// Connections that a batch is meant to keep. Two batches are alive at a time, so that, where paths alike bring
+/// alike, there are 2^20 connections of 24 bytes, or 50 MB of vectors that may have grown to twice what they hold. Only
+/// paths with more than 2^19 / (16 · 64) = 512 connections each, in the mean, come to more, in proportion.
+const CONNECTIONS: u64 = 1 << 19;
 
 /// Which paths to trace.
 #[derive(Clone, Copy, Debug)]
@@ -57,25 +62,31 @@ impl Splats {
         Self { pixels: vec![none; pixels], direct: none, caustic: none, global: none, medium: none }
     }
 
-    fn add(&mut self, splat: &Splat) {
-        let part = match splat.part {
-            Part::Medium => &mut self.medium,
-            Part::Surface(PhotonKind::Direct) => &mut self.direct,
-            Part::Surface(PhotonKind::Caustic) => &mut self.caustic,
-            Part::Surface(_) => &mut self.global,
-        };
-        for sum in [&mut self.pixels[splat.pixel as usize], part] {
-            for (sum, value) in sum.iter_mut().zip(splat.light.to_array()) {
-                *sum += f64::from(value);
-            }
+    /// Adds connections in their order, each to all pixels whose filter covers it.
+    fn add(&mut self, connections: &[Vec<Connection>], splatter: &Splatter) {
+        for connection in connections.iter().flatten() {
+            let part = match connection.part {
+                Part::Medium => &mut self.medium,
+                Part::Surface(PhotonKind::Direct) => &mut self.direct,
+                Part::Surface(PhotonKind::Caustic) => &mut self.caustic,
+                Part::Surface(_) => &mut self.global,
+            };
+            splatter.each(connection.film_position, |pixel, filter| {
+                let light = connection.light * filter;
+                for sum in [&mut self.pixels[pixel as usize], &mut *part] {
+                    for (sum, value) in sum.iter_mut().zip(light.to_array()) {
+                        *sum += f64::from(value);
+                    }
+                }
+            });
         }
     }
 }
 
-/// What one vertex brings to one pixel.
+/// What one vertex brings to the film. It is spread over the pixels when it is joined, for a filter covers many.
 #[derive(Clone, Copy, Debug)]
-struct Splat {
-    pixel: u32,
+struct Connection {
+    film_position: Vec2,
     light: Rgb,
     part: Part,
 }
@@ -109,18 +120,28 @@ pub(crate) fn light_pass(world: &World, pass: &LightPass, observer: &dyn Observe
         trace(world, &settings, pass, &splatter, range)
     };
     let chunks = pass.paths.div_ceil(CHUNK);
-    let mut before = Vec::new();
-    for first in (0..chunks).step_by(BATCH as usize) {
-        let batch = || (first..(first + BATCH).min(chunks)).into_par_iter().map(trace).collect();
-        let done: Vec<Vec<Splat>> = std::mem::take(&mut before);
+    let (mut first, mut size, mut before) = (0, *BATCH.start(), Vec::new());
+    while first < chunks {
+        let end = (first + size).min(chunks);
+        let done: Vec<Vec<Connection>> = std::mem::take(&mut before);
         // A batch is joined while the next is traced.
-        (before, ()) = rayon::join(batch, || done.iter().flatten().for_each(|splat| splats.add(splat)));
+        let batch = || (first..end).into_par_iter().map(trace).collect();
+        (before, ()) = rayon::join(batch, || splats.add(&done, &splatter));
         if work.cancelled() {
             return None;
         }
+        size = next_batch(end - first, before.iter().map(|connections| connections.len() as u64).sum());
+        first = end;
     }
-    before.iter().flatten().for_each(|splat| splats.add(splat));
+    splats.add(&before, &splatter);
     Some(splats)
+}
+
+/// How many chunks to trace before the next joining, after a batch of so many that brought so many connections. At most
+/// four times as many, for a few dark paths tell little.
+fn next_batch(chunks: u64, connections: u64) -> u64 {
+    let fitting = CONNECTIONS * chunks / connections.max(1);
+    fitting.min(4 * chunks).clamp(*BATCH.start(), *BATCH.end())
 }
 
 /// Traces a range of paths of the pass.
@@ -130,10 +151,10 @@ fn trace(
     pass: &LightPass,
     splatter: &Splatter,
     paths: Range<u64>,
-) -> Vec<Splat> {
+) -> Vec<Connection> {
     let key = Key::new(pass.seed, pass.iteration, Stream::LightPaths);
     let mut books = Ledger::new(world.light_count()).lights;
-    let mut splats = Vec::new();
+    let mut found = Vec::new();
     for path in paths.map(|path| pass.first_path + path) {
         let mut sampler = Sampler::new(Sequence::Independent, key, path);
         let mut connections = Sampler::new(Sequence::Independent, key.with(1), path);
@@ -143,15 +164,13 @@ fn trace(
                 Event::Collision(photon, vertex) => (vertex, photon.power, Part::Medium),
                 Event::Way(_) | Event::Specular => return Next::Continue,
             };
-            if let Some((position, light)) = connect(world, vertex, power, splatter, &mut connections) {
-                splatter.each(position, |pixel, filter| {
-                    splats.push(Splat { pixel, light: light * filter, part });
-                });
+            if let Some((film_position, light)) = connect(world, vertex, power, splatter, &mut connections) {
+                found.push(Connection { film_position, light, part });
             }
             Next::Continue
         });
     }
-    splats
+    found
 }
 
 /// Where on the film the light of a vertex arrives, and how much: W · Φ · f cos · T.
@@ -179,4 +198,87 @@ fn connect(
     let inside = vertex.beyond(world, seen.direction);
     let through = world.light_through(from, inside, seen.direction, &Source::Point(seen.lens), sampler);
     (!through.is_black()).then(|| (seen.film_position, sent * through))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Projection};
+    use crate::film::{FilmSettings, Filter};
+    use crate::light::{Light, LightKind};
+    use crate::material::Material;
+    use crate::math::{DVec3, Transform, Vec3};
+    use crate::medium::{Medium, Phase as PhaseFunction};
+    use crate::observer::Silent;
+    use crate::scene::Scene;
+    use crate::shape::{Geometry, Shape};
+
+    /// A lamp in a white ball of fog of this optical radius, all of which the camera sees.
+    fn ball(optical_radius: f32, filter: Filter) -> World {
+        let camera = Camera {
+            to_world: Transform::translate(DVec3::new(0.0, 0.0, -3.0)),
+            projection: Projection::Orthographic,
+            medium: None,
+        };
+        let mut scene = Scene::new(camera, FilmSettings { width: 16, height: 16, crop: None, filter });
+        let null = scene.materials.push(Material::Null);
+        let sigma_t = Rgb::splat(2.0 * optical_radius);
+        let fog = Medium::homogeneous("fog", sigma_t, Rgb::WHITE, PhaseFunction::Isotropic);
+        let mut ball = Shape::new("", Geometry::Sphere { center: Vec3::ZERO, radius: 0.5 }, null);
+        ball.boundary.interior = Some(scene.media.list.push(fog));
+        scene.shapes.push(ball);
+        let kind = LightKind::Point { position: Vec3::ZERO, intensity: Rgb::WHITE };
+        scene.lights.push(Light { name: String::new(), kind, medium: None });
+        World::new(scene).expect("a sound scene")
+    }
+
+    const WIDE: Filter = Filter::Gaussian { std_dev: 0.5 };
+
+    fn pass(paths: u64) -> LightPass {
+        LightPass { seed: 5, iteration: 0, first_path: 7, paths, max_depth: None }
+    }
+
+    fn connections(world: &World, paths: u64) -> Vec<Connection> {
+        let splatter = Splatter::new(&world.scene().film);
+        trace(world, &WalkSettings::default(), &pass(paths), &splatter, 0..paths)
+    }
+
+    /// Memory goes with the connections, however many pixels each of them is spread over.
+    #[test]
+    fn a_wide_filter_keeps_no_more() {
+        let [narrow, wide] = [Filter::Box, WIDE].map(|filter| connections(&ball(20.0, filter), 8).len());
+        assert!(narrow > 8 * 20, "{narrow}");
+        assert_eq!(narrow, wide);
+        assert_eq!(size_of::<Connection>(), 24);
+    }
+
+    #[test]
+    fn the_sums_are_those_of_all_paths_in_order_on_any_number_of_threads() {
+        let world = ball(1.0, WIDE);
+        let splatter = Splatter::new(&world.scene().film);
+        // Three batches, the last of them short.
+        let paths = 6 * 16 * CHUNK + 3;
+        let mut expected = Splats::new(256);
+        expected.add(&[connections(&world, paths)], &splatter);
+        assert!(expected.medium[1] > 0.0);
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let splats = pool.install(|| light_pass(&world, &pass(paths), &Silent));
+            assert!(splats.as_ref() == Some(&expected), "{threads} threads");
+        }
+    }
+
+    #[test]
+    fn batches_keep_no_more_connections_than_they_may() {
+        for per_chunk in [0, 1, 700, 20_000, 32_768, 10_000_000] {
+            let mut size = *BATCH.start();
+            for _ in 0..6 {
+                let next = next_batch(size, size * per_chunk);
+                assert!(next <= 4 * size && BATCH.contains(&next), "{per_chunk}");
+                assert!(next * per_chunk <= CONNECTIONS || next == *BATCH.start(), "{per_chunk}");
+                size = next;
+            }
+            assert!(per_chunk > 512 || size == *BATCH.end(), "{per_chunk}");
+        }
+    }
 }
