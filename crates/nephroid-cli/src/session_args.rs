@@ -80,6 +80,9 @@ pub struct MergeArgs {
     /// A file to write: .exr or .png for a picture, .film for the sum of the parts; may be repeated
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
+    /// Write nothing, and end with code 4, where passes are missing
+    #[arg(long)]
+    pub complete: bool,
     /// No notes
     #[arg(long)]
     pub quiet: bool,
