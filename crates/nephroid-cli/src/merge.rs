@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::console::{self, Messages};
 use crate::exit::{Exit, Failure};
 use crate::films;
-use crate::job::Job;
+use crate::job::{self, Job};
 use crate::layers;
 use crate::noise;
 use crate::output::{self, Kind, Output, Picture};
@@ -37,11 +37,15 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
     if writes_film && !is_one_piece(&header) {
         messages.note("what is missing has to be merged into the film before it can be gone on with");
     }
+    if writes_film {
+        job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
+    }
     let layers = layers::develop(&job.layers, aovs.as_ref());
     let picture = Picture { image: film.develop(), layers };
-    output::write_all(&outputs, &picture, &args.display, &|path| {
+    let (outputs, trouble) = output::write_all(outputs, &picture, &args.display, &|path| {
         films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
-    })?;
+    });
+    messages.errors(&trouble);
     let noise = noise::noise(&film);
     if args.json {
         let numbers = |ranges: &[Range<u64>]| -> Vec<_> { ranges.iter().map(|r| [r.start, r.end]).collect() };
@@ -72,7 +76,7 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             args.parts.len(),
         ));
     }
-    Ok(Exit::Done)
+    Failure::of_files(trouble).map_or(Ok(Exit::Done), Err)
 }
 
 fn sum(parts: &[PathBuf]) -> Result<FilmFile, Failure> {
