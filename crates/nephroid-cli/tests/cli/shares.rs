@@ -105,5 +105,8 @@ fn ranges_must_be_of_the_whole() {
     usage(&["--pass-range", "3"], "write A..B");
     usage(&["--pass-range", "3..9", "--passes", "8"], "the whole render has --passes 8");
     usage(&["--pass-range", "0..1", "--spp", "8"], "say with --passes");
+    usage(&["--pass-range", "0..1", "--spp", "2", "--passes", "4"], "--spp 2 is too little for --passes 4");
+    usage(&["--pass-range", "0..1", "--spp", "8", "--passes", "8", "--integrator", "ppm"], "without --spp");
+    usage(&["--pass-range", "+1..2"], "write A..B");
     assert!(dir.files().is_empty());
 }
