@@ -20,6 +20,6 @@ if [[ ! -x $venv/bin/python ]]; then
     python3 -m venv "$venv"
 fi
 if ! "$venv/bin/python" -c 'import hyperqueue' 2>/dev/null; then
-    "$venv/bin/pip" install --quiet 'hyperqueue>=0.20'
+    "$venv/bin/pip" install --quiet hyperqueue==0.27.0
 fi
 exec "$venv/bin/python" "$here/submit.py" "$@"

@@ -9,6 +9,10 @@
 
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+if (($# < 5)); then
+    sed -n '3,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+fi
 folder=$1 parts=$2 passes=$3 output=$4
 shift 4
 mkdir -p "$folder"
@@ -24,9 +28,8 @@ quoted() {
 part="$(quoted env "NEPHROID=$nephroid" "$here/part.sh" "$folder")\$SLURM_ARRAY_TASK_ID $(quoted "$parts" "$passes" "$@")"
 job=$("${SBATCH:-sbatch}" --parsable --requeue --array="0-$((parts - 1))" --cpus-per-task="${CPUS:-4}" \
     --job-name=nephroid --output="$folder/%a.log" "${more[@]}" --wrap="$part")
-# A merge of what is there: a part that was lost for good is a warning in its log, and a gap in the picture's samples.
-merge="$(quoted "$nephroid" merge)$(quoted "$folder")/*.film $(quoted -o "$output")"
-merge=${merge/" /*.film"/"/*.film"}
+# Where a part was lost for good, it fails, and names what is missing in its log.
+merge=$(quoted env "NEPHROID=$nephroid" "$here/merge.sh" "$folder" "$parts" "$output")
 "${SBATCH:-sbatch}" --parsable --dependency="afterany:${job%%;*}" --job-name=nephroid-merge \
     --output="$folder/merge.log" "${more[@]}" --wrap="$merge"
 printf 'parts: job %s; they arrive as %s/*.film\n' "${job%%;*}" "$folder" >&2

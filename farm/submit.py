@@ -64,13 +64,10 @@ def main(folder, parts, passes, output, *flags):
             submit(client, folder, parts, passes, flags)
     if cluster is not None:
         cluster.stop()
-    films = sorted(folder.glob("*.film"))
-    if not films:
-        sys.exit(f"no part was rendered; see {folder}/0.log")
-    nephroid = os.environ.get("NEPHROID", "nephroid")
-    merged = subprocess.run([nephroid, "merge", *map(str, films), "-o", output]).returncode
-    # The picture of what is there is written in any case.
-    sys.exit(merged or (1 if missing(folder, parts, passes) else 0))
+    lost = missing(folder, parts, passes)
+    if lost:
+        print(f"missing are {len(lost)} parts; see {folder}/{lost[0]}.log", file=sys.stderr)
+    sys.exit(subprocess.run([str(HERE / "merge.sh"), str(folder), str(parts), output]).returncode)
 
 
 if __name__ == "__main__":

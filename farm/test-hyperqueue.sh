@@ -13,11 +13,29 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 nephroid=$(realpath "${1:-$here/../target/release/nephroid}")
 scratch=$(mktemp -d)
 farm=
-trap '[[ -z $farm ]] || kill -9 "$farm" 2>/dev/null || true; rm -rf "$scratch"' EXIT
+
+# Processes below one, itself first: any of its threads may have started them.
+family() {
+    printf '%s\n' "$1"
+    local child
+    for child in $(cat /proc/"$1"/task/*/children 2>/dev/null); do
+        family "$child"
+    done
+}
+
+clear_away() {
+    if [[ -n $farm ]]; then
+        # shellcheck disable=SC2046
+        kill -9 $(family "$farm") 2>/dev/null || true
+    fi
+    rm -rf "$scratch"
+}
+trap clear_away EXIT
 cd "$scratch"
 
-export VENV=$scratch/venv NEPHROID=$nephroid WORKERS=2
-if ! { python3 -m venv "$VENV" && timeout 120 "$VENV/bin/pip" install --quiet 'hyperqueue>=0.20'; } >pip.log 2>&1; then
+export VENV=$scratch/venv NEPHROID=$nephroid WORKERS=2 PIDS=$scratch/pids
+mkdir "$PIDS"
+if ! { python3 -m venv "$VENV" && timeout 120 "$VENV/bin/pip" install --quiet --retries 0 --timeout 10 hyperqueue==0.27.0; } >pip.log 2>&1; then
     tail -n 3 pip.log
     printf '!!! LEFT OUT: HyperQueue cannot be installed here, so nothing was tested\n'
     exit 0
@@ -33,22 +51,13 @@ start() {
     farm=$!
 }
 
-# Processes below one, itself first.
-family() {
-    printf '%s\n' "$1"
-    local child
-    for child in $(cat "/proc/$1/task/$1/children" 2>/dev/null); do
-        family "$child"
-    done
-}
-
 # victim: waits until some part keeps a checkpoint, and prints the process of its task.
 victim() {
-    local i checkpoint
+    local i n
     for ((i = 0; i < 1200; i++)); do
-        for checkpoint in parts/*.checkpoint; do
-            if [[ -e $checkpoint && -e ${checkpoint%.checkpoint}.pid ]]; then
-                cat "${checkpoint%.checkpoint}.pid"
+        for ((n = 0; n < parts; n++)); do
+            if [[ -e parts/unfinished/$n.checkpoint.film && -e $PIDS/$n.pid ]]; then
+                cat "$PIDS/$n.pid"
                 return
             fi
         done
@@ -68,7 +77,7 @@ sleep 0.3
 # shellcheck disable=SC2046
 kill -9 $(family "$farm")
 wait "$farm" 2>/dev/null || true
-printf 'killed server, workers and tasks, with %s of %s parts there\n' "$(find parts -name '*.film' | wc -l)" $parts
+printf 'killed server, workers and tasks, with %s of %s parts there\n' "$(find parts -maxdepth 1 -name '*.film' | wc -l)" $parts
 start
 if ! wait "$farm"; then
     cat farm.log parts/*.log
@@ -78,3 +87,12 @@ farm=
 tail -n 3 farm.log
 cmp whole.exr merged.exr
 printf 'the merged picture is that of a single run, to the bit\n'
+
+# The folder is of one render only.
+code=0
+"$here/part.sh" parts 0 $parts $passes "${flags[@]}" --seed 5 2>refused.log || code=$?
+if ((code != 2)); then
+    cat refused.log
+    exit 1
+fi
+printf 'another render is refused\n'

@@ -65,6 +65,11 @@ impl Messages {
         self.list.push(line);
     }
 
+    /// Errors that are told at the end.
+    pub fn errors(&mut self, messages: &[String]) {
+        self.list.extend(messages.iter().map(|message| format!("error: {message}")));
+    }
+
     /// Something worth knowing.
     pub fn note(&mut self, message: &str) {
         let line = format!("note: {message}");

@@ -41,6 +41,11 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// All that could not be written, if there is any.
+    pub fn of_files(trouble: Vec<String>) -> Option<Self> {
+        (!trouble.is_empty()).then(|| Self::File(trouble.join("\nerror: ")))
+    }
+
     /// Tells the user, and gives the code to end with.
     pub fn report(&self) -> Exit {
         match self {

@@ -50,7 +50,7 @@ pub fn write(
 /// Reads a film to go on with, which must be in one piece from the first sample of its job on.
 pub fn read_to_go_on(path: &Path) -> Result<Begun, Failure> {
     let FilmFile { header, film, aovs } = read_film(path).map_err(|e| Failure::File(e.to_string()))?;
-    let job = job_of(path, &header)?;
+    let job = job_of(path, &header)?.where_it_is(path)?;
     let per_pass = header.samples_per_pass;
     let first = job.limits.first_sample(per_pass);
     let covered = match header.covered.ranges() {

@@ -36,8 +36,10 @@ impl<'a> RecordingFiles<'a> {
     pub fn fingerprints(self, scene: &Path) -> Identity {
         let mut seen = self.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
         let main = seen.remove(scene).map(|hash| ("scene".to_owned(), hash));
-        let folder = scene.parent().unwrap_or(Path::new(""));
-        let name = |path: PathBuf| path.strip_prefix(folder).map_or(path.clone(), Path::to_owned);
+        // One of them may be named from the root, and the other from the current folder.
+        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let folder = absolute(scene).parent().map(Path::to_owned).unwrap_or_default();
+        let name = |path: PathBuf| absolute(&path).strip_prefix(&folder).map_or(path, Path::to_owned);
         let others = seen.into_iter().map(|(path, hash)| (format!("file {}", name(path).display()), hash));
         main.into_iter().chain(others).collect()
     }
@@ -66,7 +68,11 @@ pub fn of_render(
     layers: &[LayerPlan],
 ) -> Identity {
     let mut out: Identity = Vec::new();
-    let mut add = |name: &str, value: String| out.push((name.to_owned(), value));
+    // Nobody sees that an empty list is one.
+    let mut add = |name: &str, value: String| {
+        let value = if value.is_empty() { "none".to_owned() } else { value };
+        out.push((name.to_owned(), value));
+    };
     add("renderer", format!("nephroid {}", env!("CARGO_PKG_VERSION")));
     // Pictures are the same bits whatever instructions a machine has.
     add("instructions", "portable".to_owned());
@@ -85,7 +91,9 @@ pub fn of_render(
     }
     if let Value::Object(method) = method::describe(&settings.method) {
         for (name, value) in method {
-            let name = if name == "name" { "integrator".to_owned() } else { name.replace('_', " ") };
+            // Of parameters of another integrator it need not be told that they differ.
+            let parameter = || format!("integrator {}", name.replace('_', " "));
+            let name = if name == "name" { "integrator".to_owned() } else { parameter() };
             add(&name, plain(&value));
         }
     }
@@ -135,5 +143,15 @@ mod tests {
         let expected = expected.map(|(name, text)| (name.to_owned(), fingerprint(text.as_bytes())));
         assert_eq!(seen, expected);
         assert_ne!(fingerprint(b"mesh"), fingerprint(b"mesi"));
+    }
+
+    #[test]
+    fn names_are_those_in_the_folder_however_it_is_named() {
+        let mesh = std::path::absolute("a/m.ply").unwrap();
+        let files = MemoryFiles::default().with("a/s.xml", "scene").with(&mesh, "mesh");
+        let recording = RecordingFiles::new(&files);
+        recording.read(&mesh).unwrap();
+        let seen = recording.fingerprints(Path::new("a/s.xml"));
+        assert_eq!(seen, [("file m.ply".to_owned(), fingerprint(b"mesh"))]);
     }
 }

@@ -49,22 +49,20 @@ pub struct Order {
 }
 
 impl Order {
-    /// What this process was told.
+    /// What this process was told, for a film file to keep.
     pub fn of_this_process(scene: &Path, outputs: &[PathBuf]) -> Result<Self, Failure> {
         let mut given: Vec<OsString> = std::env::args_os().skip(1).collect();
         if given.is_empty() {
             given.push("render".into());
         }
-        let text = |argument: OsString| {
-            argument.into_string().map_err(|argument| {
-                let name = argument.to_string_lossy().into_owned();
-                Failure::Usage(format!("{name}: a film file keeps names in UTF-8 only, and this is none"))
-            })
-        };
+        let text =
+            |argument: OsString| argument.into_string().map_err(|argument| not_text(argument.as_ref()));
         let arguments = given.into_iter().map(text).collect::<Result<_, _>>()?;
         let folder = std::env::current_dir()
             .map_err(|e| Failure::File(format!("the current folder cannot be found: {e}")))?;
         let scene = load::is_file(scene).then(|| folder.join(scene));
+        let names = [&folder].into_iter().chain(&scene).chain(outputs);
+        check_names(names.map(PathBuf::as_path))?;
         Ok(Self { folder, arguments, scene, outputs: outputs.to_vec() })
     }
 
@@ -75,15 +73,25 @@ impl Order {
     }
 }
 
+/// Film files keep names as text, which not all are.
+pub fn check_names<'a>(names: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    names.into_iter().find(|name| name.to_str().is_none()).map_or(Ok(()), |name| Err(not_text(name)))
+}
+
+fn not_text(name: &Path) -> Failure {
+    let name = name.display();
+    Failure::Usage(format!("{name}: a film file keeps names in UTF-8 only, and this is none"))
+}
+
 impl Job {
     /// One object.
     pub fn to_json(&self) -> Value {
         let layer = |layer: &LayerPlan| json!({ "name": layer.name, "value": layer.aov.name() });
         json!({
-            "folder": self.folder.to_string_lossy(),
+            "folder": self.folder.to_str(),
             "arguments": self.arguments,
-            "scene": self.scene.as_ref().map(|path| path.to_string_lossy()),
-            "outputs": self.outputs.iter().map(|path| path.to_string_lossy()).collect::<Vec<_>>(),
+            "scene": self.scene.as_ref().and_then(|path| path.to_str()),
+            "outputs": self.outputs.iter().map(|path| path.to_str()).collect::<Vec<_>>(),
             "limits": self.limits.to_json(),
             "layers": self.layers.iter().map(layer).collect::<Vec<_>>(),
             "seconds": self.spent,
@@ -114,6 +122,18 @@ impl Job {
             layers: value["layers"].as_array()?.iter().map(layer).collect::<Option<_>>()?,
             spent: value["seconds"].as_f64().filter(|s| s.is_finite() && *s >= 0.0)?,
         })
+    }
+
+    /// The job in the folder that its film file lies in, if its own is gone: it has been moved with all that is in it.
+    pub fn where_it_is(mut self, film: &Path) -> Result<Self, Failure> {
+        let beside = std::path::absolute(film).ok().and_then(|film| film.parent().map(Path::to_owned));
+        if let (false, Some(beside)) = (self.folder.is_dir(), beside) {
+            check_names([beside.as_path()])?;
+            let scene = self.scene.as_ref().and_then(|scene| scene.strip_prefix(&self.folder).ok());
+            self.scene = scene.map(|scene| beside.join(scene)).or(self.scene);
+            self.folder = beside;
+        }
+        Ok(self)
     }
 
     /// The flags of the render, with its scene as it is named from here.
@@ -156,9 +176,9 @@ mod tests {
     fn job() -> Job {
         let layer = |name: &str, aov: Aov| LayerPlan { name: name.into(), aov, channels: aov.channels() };
         Job {
-            folder: "/work".into(),
+            folder: "/home/a".into(),
             arguments: ["render", "a.xml", "-D", "x=1 2", "-o", "b.exr"].map(str::to_owned).to_vec(),
-            scene: Some("/work/a.xml".into()),
+            scene: Some("/home/a/a.xml".into()),
             outputs: vec!["b.exr".into()],
             plan: RenderPlan::default(),
             limits: Plan {
@@ -195,9 +215,29 @@ mod tests {
     }
 
     #[test]
+    fn a_folder_that_is_gone_is_where_the_film_is() {
+        let moved = job().where_it_is(Path::new("/home/b/c.film")).unwrap();
+        assert_eq!(
+            (moved.folder.as_path(), moved.scene),
+            (Path::new("/home/b"), Some("/home/b/a.xml".into()))
+        );
+        let here = Job { folder: std::env::current_dir().unwrap(), ..job() };
+        assert_eq!(here.clone().where_it_is(Path::new("/home/b/c.film")).unwrap(), here);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_that_are_no_text_are_refused() {
+        use std::os::unix::ffi::OsStrExt;
+        let odd = Path::new(std::ffi::OsStr::from_bytes(b"a\xff.xml"));
+        assert!(check_names([Path::new("ä.xml")]).is_ok());
+        assert!(check_names([Path::new("a.xml"), odd]).is_err());
+    }
+
+    #[test]
     fn its_flags_are_read_again() {
         let args = job().args().unwrap();
-        assert_eq!(job().named_from_here(Path::new("b.exr")), Path::new("/work/b.exr"));
+        assert_eq!(job().named_from_here(Path::new("b.exr")), Path::new("/home/a/b.exr"));
         assert_eq!(args.reading.defines, [("x".to_owned(), "1 2".to_owned())]);
         let mut wrong = job();
         wrong.arguments.push("--no-such-flag".to_owned());

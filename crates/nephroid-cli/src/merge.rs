@@ -1,5 +1,6 @@
 //! `nephroid merge`: parts of a render that were made apart, put together.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use nephroid_formats::film_file::{FilmFile, FilmFileError, FilmHeader, FilmMerger, read_header};
@@ -8,7 +9,7 @@ use serde_json::{Value, json};
 use crate::console::{self, Messages};
 use crate::exit::{Exit, Failure};
 use crate::films;
-use crate::job::Job;
+use crate::job::{self, Job};
 use crate::layers;
 use crate::noise;
 use crate::output::{self, Kind, Output, Picture};
@@ -21,33 +22,41 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
     let FilmFile { header, film, aovs } = sum(&args.parts)?;
     let job = job_of_the_sum(&args.parts, &header, &outputs)?;
     let missing = missing(&header, &job);
+    let in_words = |ranges: &[Range<u64>]| films::passes(ranges, header.samples_per_pass);
+    if args.complete && (header.covered.is_empty() || !missing.is_empty()) {
+        let missing = if missing.is_empty() { "every pass".to_owned() } else { in_words(&missing) };
+        return Err(Failure::File(format!("--complete: nothing is written, for missing is {missing}")));
+    }
     if header.covered.is_empty() {
         messages.warning("there is not one sample in the films: the pictures are black");
-    } else if let Some(missing) = &missing {
+    } else if !missing.is_empty() {
+        let missing = in_words(&missing);
         messages.warning(&format!("the pictures are of a part of the render: missing is {missing}"));
     }
     let writes_film = outputs.iter().any(|output| output.kind == Kind::Film);
     if writes_film && !is_one_piece(&header) {
         messages.note("what is missing has to be merged into the film before it can be gone on with");
     }
+    if writes_film {
+        job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
+    }
     let layers = layers::develop(&job.layers, aovs.as_ref());
     let picture = Picture { image: film.develop(), layers };
-    output::write_all(&outputs, &picture, &args.display, &|path| {
+    let (outputs, trouble) = output::write_all(outputs, &picture, &args.display, &|path| {
         films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
-    })?;
+    });
+    messages.errors(&trouble);
     let noise = noise::noise(&film);
     if args.json {
-        let covered = films::passes(header.covered.ranges(), header.samples_per_pass);
-        let ranges: Vec<_> = header.covered.into_iter().map(|range| [range.start, range.end]).collect();
+        let numbers = |ranges: &[Range<u64>]| -> Vec<_> { ranges.iter().map(|r| [r.start, r.end]).collect() };
         let outputs: Vec<_> = outputs.iter().map(|o| o.path.display().to_string()).collect();
         let object = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "width": film.width(),
             "height": film.height(),
             "parts": args.parts.len(),
-            "covered": ranges,
-            "passes": covered,
-            "missing": missing,
+            "covered": numbers(header.covered.ranges()),
+            "missing": numbers(&missing),
             "samples_per_pass": header.samples_per_pass,
             "samples_per_pixel": header.covered.total(),
             "noise": noise,
@@ -67,7 +76,7 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             args.parts.len(),
         ));
     }
-    Ok(Exit::Done)
+    Failure::of_files(trouble).map_or(Ok(Exit::Done), Err)
 }
 
 fn sum(parts: &[PathBuf]) -> Result<FilmFile, Failure> {
@@ -103,12 +112,12 @@ fn is_one_piece(header: &FilmHeader) -> bool {
     header.covered.gaps().is_empty() && !header.covered.is_empty()
 }
 
-/// Passes that the render should have and the films have not.
-fn missing(header: &FilmHeader, job: &Job) -> Option<String> {
+/// Numbers of the samples of each pixel that the render should have and the films have not.
+fn missing(header: &FilmHeader, job: &Job) -> Vec<Range<u64>> {
     let mut gaps = header.covered.gaps();
     if let Some(end) = job.limits.end(header.samples_per_pass).filter(|end| *end > header.covered.end()) {
         let begin = header.covered.end();
         gaps.push(begin..end);
     }
-    (!gaps.is_empty()).then(|| films::passes(&gaps, header.samples_per_pass))
+    gaps
 }

@@ -97,13 +97,34 @@ pub fn default_names(name: &OsStr) -> Vec<PathBuf> {
 /// The files of these names; each could be written now.
 pub fn outputs(named: &[PathBuf]) -> Result<Vec<Output>, Failure> {
     let outputs = named.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
-    for (i, output) in outputs.iter().enumerate() {
-        if outputs[..i].contains(output) {
-            return Err(usage(&output.path, "is to be written twice"));
-        }
+    all_differ(named.iter().map(|path| (path.as_path(), "-o")))?;
+    for output in &outputs {
         check_writable(&output.path).map_err(|e| Failure::File(e.to_string()))?;
     }
     Ok(outputs)
+}
+
+/// Files to write, each with the flag that asks for it, are not one under two names.
+pub fn all_differ<'a>(files: impl IntoIterator<Item = (&'a Path, &'a str)>) -> Result<(), Failure> {
+    let mut seen: Vec<(PathBuf, &str)> = Vec::new();
+    for (path, flag) in files {
+        let place = place(path);
+        if let Some((_, other)) = seen.iter().find(|(other, _)| *other == place) {
+            let flags = if *other == flag { String::new() } else { format!(", with {other} and {flag}") };
+            return Err(usage(path, &format!("is to be written twice{flags}")));
+        }
+        seen.push((place, flag));
+    }
+    Ok(())
+}
+
+/// The one name of a file that may not be there yet, in a folder that is.
+fn place(path: &Path) -> PathBuf {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (parent.canonicalize(), path.file_name()) {
+        (Ok(parent), Some(name)) => parent.join(name),
+        _ => path.to_owned(),
+    }
 }
 
 /// A picture with its further layers.
@@ -114,16 +135,18 @@ pub struct Picture {
     pub layers: Vec<DevelopedLayer>,
 }
 
-/// Writes a picture to each file; `film` writes the sums it is made of. One that cannot be written keeps no other from being.
+/// Writes a picture to each file; `film` writes the sums it is made of. One that cannot be written keeps no other from being:
+/// gives those that were, and why the others were not.
 pub fn write_all(
-    outputs: &[Output],
+    mut outputs: Vec<Output>,
     picture: &Picture,
     display: &DisplayArgs,
     film: &dyn Fn(&Path) -> Result<(), String>,
-) -> Result<(), Failure> {
-    let errors = outputs.iter().filter_map(|o| o.write(picture, display, film).err());
-    let errors: Vec<String> = errors.collect();
-    if errors.is_empty() { Ok(()) } else { Err(Failure::File(errors.join("\nerror: "))) }
+) -> (Vec<Output>, Vec<String>) {
+    let mut trouble = Vec::new();
+    outputs
+        .retain(|output| output.write(picture, display, film).map_err(|error| trouble.push(error)).is_ok());
+    (outputs, trouble)
 }
 
 /// Reads a picture.

@@ -47,14 +47,26 @@ impl Plan {
         }
     }
 
-    /// A part of it, which `--passes` and `--spp` then describe the whole of.
-    pub fn part(self, limits: &LimitArgs, range: Option<PassRange>) -> Result<Self, Failure> {
+    /// A part of it, which `--passes` and `--spp` then describe the whole of. Where the samples of the whole would cut passes
+    /// off, parts by passes would not add up to it: a `progressive` render decides itself how many samples a pass has.
+    pub fn part(
+        self,
+        limits: &LimitArgs,
+        range: Option<PassRange>,
+        progressive: bool,
+    ) -> Result<Self, Failure> {
         let Some(range) = range else { return Ok(self) };
         let refuse = |message: String| Err(Failure::Usage(format!("--pass-range: {message}")));
         match (limits.spp, limits.passes) {
+            (Some(_), _) if progressive => {
+                refuse("ppm decides how many samples a pass has: give --passes, without --spp".to_owned())
+            }
             (Some(_), None) => {
                 refuse("with --spp, say with --passes how many passes share the samples".to_owned())
             }
+            (Some(spp), Some(passes)) if u64::from(spp) < passes => refuse(format!(
+                "--spp {spp} is too little for --passes {passes}, of which each has a sample or more: give fewer --passes"
+            )),
             (_, Some(passes)) if range.end > passes => {
                 refuse(format!("the whole render has --passes {passes}, numbered from 0"))
             }
@@ -64,8 +76,14 @@ impl Plan {
     }
 
     /// Goes on with what was interrupted after `spent` seconds: with other limits where they are given. Those of counts
-    /// replace all others; time counts anew.
-    pub fn resumed(self, limits: &LimitArgs, spent: f64) -> Result<Self, Failure> {
+    /// replace all others; time counts anew. What was `done` has so many samples a pass, and ends before that sample; where
+    /// that is all there was to do, time alone means more than that.
+    pub fn resumed(
+        self,
+        limits: &LimitArgs,
+        spent: f64,
+        (per_pass, done): (u32, u64),
+    ) -> Result<Self, Failure> {
         let counts = limits.spp.is_some() || limits.passes.is_some();
         if let (true, Some(range)) = (counts, self.range) {
             return Err(Failure::Usage(format!(
@@ -80,6 +98,9 @@ impl Plan {
         }
         if let Some(seconds) = limits.time {
             plan.seconds = Some(spent + seconds);
+            if !counts && plan.range.is_none() && plan.end(per_pass).is_some_and(|end| done >= end) {
+                (plan.samples, plan.passes) = (None, None);
+            }
         }
         Ok(plan)
     }
@@ -169,24 +190,30 @@ mod tests {
 
     #[test]
     fn a_part_is_one_of_the_whole() {
-        let part = |spp, passes, range: (u64, u64)| {
+        let part_of = |progressive: bool, spp, passes, range: (u64, u64)| {
             let limits = LimitArgs { spp, passes, time: None };
             let range = Some(PassRange { begin: range.0, end: range.1 });
-            Plan::new(&limits, Some(16)).part(&limits, range).ok().map(|plan| {
+            Plan::new(&limits, Some(16)).part(&limits, range, progressive).ok().map(|plan| {
                 let n = plan.samples_per_pass;
                 (n, plan.first_sample(n), plan.end(n))
             })
         };
+        let part = |spp, passes, range| part_of(false, spp, passes, range);
         assert_eq!(part(None, None, (3, 5)), Some((16, 48, Some(80))));
         assert_eq!(part(Some(64), Some(8), (7, 8)), Some((8, 56, Some(64))));
         assert_eq!(part(None, Some(8), (7, 9)), None);
         assert_eq!(part(Some(64), None, (0, 1)), None);
+        // Of two samples, four passes would have two; and each part one.
+        assert_eq!(part(Some(2), Some(4), (0, 1)), None);
+        assert_eq!(part(Some(17), Some(4), (3, 4)), Some((4, 12, Some(16))));
+        assert_eq!(part_of(true, Some(8), Some(8), (0, 1)), None);
+        assert_eq!(part_of(true, None, Some(8), (0, 1)), Some((16, 0, Some(16))));
         let plan = Plan::new(&LimitArgs::default(), Some(16));
         let range = Some(PassRange { begin: 3, end: 5 });
-        let whole = plan.part(&LimitArgs::default(), range).unwrap().whole(7);
+        let whole = plan.part(&LimitArgs::default(), range, false).unwrap().whole(7);
         assert_eq!((whole.first_sample(16), whole.end(16)), (0, Some(112)));
         let limits = LimitArgs { passes: Some(9), ..LimitArgs::default() };
-        let whole = Plan::new(&limits, Some(16)).part(&limits, range).unwrap().whole(7);
+        let whole = Plan::new(&limits, Some(16)).part(&limits, range, false).unwrap().whole(7);
         assert_eq!(whole.end(16), Some(144));
     }
 
@@ -194,7 +221,7 @@ mod tests {
     fn new_limits_replace_old_ones() {
         let old = Plan::new(&LimitArgs { spp: None, passes: Some(4), time: Some(10.0) }, Some(16));
         let resumed = |spp, passes, time| {
-            let plan = old.resumed(&LimitArgs { spp, passes, time }, 7.0).unwrap();
+            let plan = old.resumed(&LimitArgs { spp, passes, time }, 7.0, (16, 40)).unwrap();
             (plan.samples, plan.passes, plan.seconds)
         };
         assert_eq!(resumed(None, None, None), (None, Some(4), Some(10.0)));
@@ -202,6 +229,21 @@ mod tests {
         assert_eq!(resumed(None, Some(9), None), (None, Some(9), None));
         assert_eq!(resumed(Some(100), None, Some(1.0)), (Some(100), None, Some(8.0)));
         let part = Plan { range: Some(PassRange { begin: 0, end: 2 }), ..old };
-        assert!(part.resumed(&LimitArgs { passes: Some(9), ..LimitArgs::default() }, 0.0).is_err());
+        let nine = LimitArgs { passes: Some(9), ..LimitArgs::default() };
+        assert!(part.resumed(&nine, 0.0, (16, 0)).is_err());
+    }
+
+    #[test]
+    fn time_alone_goes_beyond_the_end_of_what_is_done() {
+        let limits = |passes, time| LimitArgs { spp: None, passes, time };
+        let old = Plan::new(&limits(Some(4), None), Some(16));
+        let end = |plan: Plan, done| {
+            let plan = plan.resumed(&limits(None, Some(5.0)), 7.0, (16, done)).unwrap();
+            assert_eq!(plan.seconds, Some(12.0));
+            plan.end(16)
+        };
+        assert_eq!((end(old, 63), end(old, 64)), (Some(64), None));
+        let part = Plan { range: Some(PassRange { begin: 0, end: 2 }), ..old };
+        assert_eq!(end(part, 32), Some(32));
     }
 }

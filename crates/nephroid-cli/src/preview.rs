@@ -45,6 +45,8 @@ impl Turn {
 pub struct Previews<'a> {
     display: &'a DisplayArgs,
     file: Option<(Output, Turn)>,
+    /// Whether it was told that the file cannot be written.
+    told: bool,
     viewer: Option<(Viewer, Turn)>,
 }
 
@@ -59,12 +61,13 @@ impl<'a> Previews<'a> {
                 Some((output, Turn::new(Duration::from_secs_f64(args.preview_every))))
             }
         };
-        let viewer = args.tev.map(|address| (Viewer::new(address, name), Turn::new(VIEWER_INTERVAL)));
-        Ok(Self { display, file, viewer })
+        let viewer =
+            args.tev.as_ref().map(|address| (Viewer::new(address, name), Turn::new(VIEWER_INTERVAL)));
+        Ok(Self { display, file, told: false, viewer })
     }
 
-    /// Shows the picture where it is time to, or everywhere if it is the `last`. What goes wrong is told once: nothing is
-    /// shown there any more.
+    /// Shows the picture where it is time to, or everywhere if it is the `last`. What goes wrong is told once: a file is
+    /// tried again when it is time, and a viewer is not.
     pub fn show(&mut self, last: bool, picture: impl FnOnce() -> Image) -> Vec<String> {
         let is_due = |turn: &Turn| last || turn.is_due();
         let file = self.file.as_ref().is_some_and(|(_, turn)| is_due(turn));
@@ -76,9 +79,10 @@ impl<'a> Previews<'a> {
         let mut trouble = Vec::new();
         if file && let Some((output, turn)) = &mut self.file {
             let shown = || self.display.tonemap.apply(&image, self.display.exposure);
-            if let Err(error) = turn.take(|| write_png(&output.path, &shown())) {
-                trouble.push(format!("no more previews: {error}"));
-                self.file = None;
+            if let Err(error) = turn.take(|| write_png(&output.path, &shown()))
+                && !std::mem::replace(&mut self.told, true)
+            {
+                trouble.push(format!("no preview for now: {error}"));
             }
         }
         if viewer

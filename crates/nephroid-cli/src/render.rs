@@ -5,6 +5,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use nephroid::integrator::Method;
 use nephroid::session::RenderSettings;
 use nephroid_formats::film_file::identity_differences;
 use nephroid_formats::image::{MAX_PIXELS, check_writable};
@@ -48,45 +49,15 @@ pub fn go(
     let mut messages = Messages::new(args.quiet);
     let scene = args.scene.as_deref().unwrap_or(Path::new(builtin::DEFAULT));
     let outputs = output::outputs(outputs)?;
-    let checkpoint = args.session.checkpoint.as_deref();
-    if let Some(path) = checkpoint {
-        check_checkpoint(path, &outputs)?;
-    }
+    check_files(args, &outputs, resumed.is_some())?;
     let mut previews = Previews::new(&args.watch, &name(args).to_string_lossy(), &args.display)?;
     let clock = Instant::now();
-    let (mut file, files) = load::load_recorded(scene, &args.reading)?;
-    for warning in &file.warnings {
-        messages.diagnostic(warning);
-    }
-    let method = method::choose(args.integrator, &file, &args.photons, &mut messages)?;
-    resize(&mut file, args.resolution, &mut messages)?;
-    let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
-    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps_layers, &mut messages)?;
-    let plan = match &resumed {
-        Some((begun, limits)) => begun.job.limits.resumed(limits, begun.job.spent)?,
-        None => Plan::new(&args.limits, file.sample_count).part(&args.limits, args.session.pass_range)?,
-    };
-    let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
-    let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
-    let begun = resumed.map(|(begun, _)| begun);
-    let order = match &begun {
-        Some(begun) => {
-            check_same(begun, &identity)?;
-            begun.job.order()
-        }
-        None => {
-            let paths: Vec<PathBuf> = outputs.iter().map(|output| output.path.clone()).collect();
-            Order::of_this_process(scene, &paths)?
-        }
-    };
-    let kept = begun.as_ref().map(|begun| begun.covered.end);
-    let mut checkpoint = checkpoint.map(|path| Checkpoint::new(path, args.session.checkpoint_every, kept));
-    if let (Some(checkpoint), None) = (&checkpoint, &begun) {
-        films::refuse_to_replace(checkpoint.path(), &identity)?;
-    }
+    let (file, task) = prepare(args, scene, &outputs, resumed, &mut messages)?;
+    let (settings, plan) = (task.settings.clone(), task.plan);
+    let kept = task.begun.as_ref().map(|begun| begun.covered.end);
+    let every = args.session.checkpoint_every;
+    let mut checkpoint = args.session.checkpoint.as_deref().map(|path| Checkpoint::new(path, every, kept));
     let reading = clock.elapsed();
-    let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
-    let task = Task { settings: settings.clone(), plan, layers, identity, order, begun, visible };
 
     let companions =
         Companions { checkpoint: checkpoint.as_mut(), previews: &mut previews, messages: &mut messages };
@@ -96,13 +67,8 @@ pub fn go(
         messages.diagnostic(remark);
     }
     let writing = Instant::now();
-    let written = write(&rendered, &outputs, args);
-    let unkept = checkpoint.as_ref().and_then(|c| c.trouble().map(str::to_owned));
-    let outputs = match (written, unkept) {
-        (Ok(outputs), None) => outputs,
-        (Ok(_), Some(trouble)) => return Err(Failure::File(trouble)),
-        (Err(failure), _) => return Err(failure),
-    };
+    let (outputs, mut trouble) = write(&rendered, outputs, args);
+    trouble.extend(checkpoint.as_ref().and_then(|checkpoint| checkpoint.trouble().map(str::to_owned)));
     let report = Report {
         scene: &scene.display().to_string(),
         settings: &settings,
@@ -114,19 +80,79 @@ pub fn go(
         writing: writing.elapsed(),
     };
     report.check(&mut messages);
+    messages.errors(&trouble);
     if args.json {
         console::result(&format!("{}\n", report.json(&messages.list)))?;
     } else if !args.quiet {
         console::say(report.text().trim_end());
     }
-    Ok(if rendered.ended == Ended::Interrupted { Exit::Stopped } else { Exit::Done })
+    match Failure::of_files(trouble) {
+        Some(failure) => Err(failure),
+        None if rendered.ended == Ended::Interrupted => Ok(Exit::Stopped),
+        None => Ok(Exit::Done),
+    }
 }
 
-/// A checkpoint could be written, and is nothing else that is.
-fn check_checkpoint(path: &Path, outputs: &[Output]) -> Result<(), Failure> {
-    if outputs.iter().any(|output| output.path == path) {
-        let name = path.display();
-        return Err(Failure::Usage(format!("{name}: is to be written twice, as the checkpoint and with -o")));
+/// Reads the scene, and settles what is to be rendered of it.
+fn prepare(
+    args: &RenderArgs,
+    scene: &Path,
+    outputs: &[Output],
+    resumed: Option<(Begun, &LimitArgs)>,
+    messages: &mut Messages,
+) -> Result<(SceneFile, Task), Failure> {
+    let (mut file, files) = load::load_recorded(scene, &args.reading)?;
+    for warning in &file.warnings {
+        messages.diagnostic(warning);
+    }
+    let method = method::choose(args.integrator, &file, &args.photons, messages)?;
+    resize(&mut file, args.resolution, messages)?;
+    let checkpoint = args.session.checkpoint.as_deref();
+    let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
+    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps_layers, messages)?;
+    let plan = match &resumed {
+        Some((begun, limits)) => {
+            let done = (begun.job.plan.camera.samples_per_pixel, begun.covered.end);
+            begun.job.limits.resumed(limits, begun.job.spent, done)?
+        }
+        None => {
+            let progressive = matches!(method, Method::Ppm(_));
+            let whole = Plan::new(&args.limits, file.sample_count);
+            whole.part(&args.limits, args.session.pass_range, progressive)?
+        }
+    };
+    let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
+    let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
+    let begun = resumed.map(|(begun, _)| begun);
+    let keeps_films = checkpoint.is_some() || outputs.iter().any(|output| output.kind == Kind::Film);
+    let order = match &begun {
+        Some(begun) => {
+            check_same(begun, &identity)?;
+            Some(begun.job.order())
+        }
+        None if keeps_films => {
+            let paths: Vec<PathBuf> = outputs.iter().map(|output| output.path.clone()).collect();
+            Some(Order::of_this_process(scene, &paths)?)
+        }
+        None => None,
+    };
+    if let (Some(path), None) = (checkpoint, &begun) {
+        films::refuse_to_replace(path, &identity)?;
+    }
+    let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
+    Ok((file, Task { settings, plan, layers, identity, order, begun, visible }))
+}
+
+/// The checkpoint could be written, and no file is to be written as two things. What is gone on with may have any name.
+fn check_files(args: &RenderArgs, outputs: &[Output], resumes: bool) -> Result<(), Failure> {
+    let checkpoint = args.session.checkpoint.as_deref();
+    let written = outputs.iter().map(|output| (output.path.as_path(), "-o"));
+    let kept = checkpoint.map(|path| (path, "--checkpoint"));
+    let shown = args.watch.preview.as_deref().map(|path| (path, "--preview"));
+    output::all_differ(written.chain(kept).chain(shown))?;
+    let Some(path) = checkpoint else { return Ok(()) };
+    if !resumes {
+        Output::of_kind(path, Kind::Film)?;
     }
     check_writable(path).map_err(|e| Failure::File(e.to_string()))
 }
@@ -140,7 +166,8 @@ fn check_same(begun: &Begun, identity: &identity::Identity) -> Result<(), Failur
     }
     let differences = differences.join("; ");
     Err(Failure::File(format!(
-        "{name}: cannot be gone on with, for it has changed since what it is of: {differences}"
+        "{name}: cannot be gone on with: it would be another picture from here on. What has changed since it was begun, \
+         then and now: {differences}"
     )))
 }
 
@@ -174,15 +201,14 @@ pub fn resize(
 }
 
 /// Writes what there is; nothing if not a single sample is, and no film if there are not the first of every pixel.
-fn write(rendered: &Rendered, outputs: &[Output], args: &RenderArgs) -> Result<Vec<Output>, Failure> {
-    if rendered.picture.0.iterations() == 0 {
-        return Ok(Vec::new());
+/// Gives what was written, and why the rest could not be.
+fn write(rendered: &Rendered, mut outputs: Vec<Output>, args: &RenderArgs) -> (Vec<Output>, Vec<String>) {
+    if !rendered.has_picture() {
+        return (Vec::new(), Vec::new());
     }
-    let outputs: Vec<Output> =
-        outputs.iter().filter(|o| o.kind != Kind::Film || rendered.has_film()).cloned().collect();
+    outputs.retain(|output| output.kind != Kind::Film || rendered.has_film());
     let (film, further) = &rendered.picture;
-    let layers = layers::develop(&rendered.job.layers, further.as_ref());
+    let layers = layers::develop(&rendered.layers, further.as_ref());
     let picture = Picture { image: film.develop(), layers };
-    output::write_all(&outputs, &picture, &args.display, &|path| rendered.write_film(path))?;
-    Ok(outputs)
+    output::write_all(outputs, &picture, &args.display, &|path| rendered.write_film(path))
 }

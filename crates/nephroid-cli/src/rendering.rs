@@ -16,7 +16,7 @@ use crate::console::Messages;
 use crate::exit::Failure;
 use crate::films::{self, Begun};
 use crate::identity::{self, Identity};
-use crate::job::Order;
+use crate::job::{Job, Order};
 use crate::layers::LayerPlan;
 use crate::load;
 use crate::noise;
@@ -34,8 +34,8 @@ pub struct Task {
     pub layers: Vec<LayerPlan>,
     /// What it is, as far as that is known beforehand.
     pub identity: Identity,
-    /// What it was told to be.
-    pub order: Order,
+    /// What it was told to be, where a film is to be kept or written.
+    pub order: Option<Order>,
     /// What was rendered of it before.
     pub begun: Option<Begun>,
     /// Whether to show how far it is.
@@ -52,8 +52,12 @@ pub struct Rendered {
     pub covered: Range<u64>,
     /// What the films are of.
     pub identity: Identity,
-    /// What they are for.
-    pub job: crate::job::Job,
+    /// What they are for, where a film is to be written.
+    job: Option<Job>,
+    /// What it decided before its first pass.
+    decided: RenderPlan,
+    /// The layers of the picture.
+    pub layers: Vec<LayerPlan>,
     /// What was done in this run.
     pub statistics: Statistics,
     /// How much the picture still changes.
@@ -99,7 +103,7 @@ impl Rendered {
 
     /// Samples of each pixel in a pass.
     pub fn samples_per_pass(&self) -> u32 {
-        self.job.plan.camera.samples_per_pixel
+        self.decided.camera.samples_per_pixel
     }
 
     /// Passes that are complete in the picture.
@@ -112,11 +116,17 @@ impl Rendered {
         !self.covered.is_empty()
     }
 
+    /// Whether there is anything to make a picture of.
+    pub fn has_picture(&self) -> bool {
+        self.picture.0.iterations() > 0
+    }
+
     /// Writes the sums of whole steps.
     pub fn write_film(&self, path: &std::path::Path) -> Result<(), String> {
+        let job = self.job.as_ref().ok_or_else(|| format!("{}: nobody asked for a film", path.display()))?;
         let (film, aovs) = self.whole.as_ref().unwrap_or(&self.picture);
         let covered = Covered::from_range(self.covered.clone());
-        films::write(path, (film, aovs.as_ref()), covered, &self.identity, &self.job)
+        films::write(path, (film, aovs.as_ref()), covered, &self.identity, job)
     }
 }
 
@@ -167,6 +177,8 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         covered,
         identity: run.identity,
         job,
+        decided,
+        layers: run.layers,
         statistics: run.session.statistics().clone(),
         remarks: load::remarks(&world, &origins),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
@@ -212,7 +224,7 @@ struct Run<'w> {
     per_pass: u32,
     plan: Plan,
     identity: Identity,
-    order: Order,
+    order: Option<Order>,
     layers: Vec<LayerPlan>,
     decided: RenderPlan,
     /// Seconds before this run.
@@ -267,20 +279,20 @@ impl Run<'_> {
         self.plan.first_sample(self.per_pass)..self.sample()
     }
 
-    fn job(&self) -> crate::job::Job {
+    fn job(&self) -> Option<Job> {
         let spent = self.spent + self.watch.elapsed().as_secs_f64();
-        self.order.clone().job(self.decided, self.plan, &self.layers, spent)
+        self.order.clone().map(|order| order.job(self.decided, self.plan, &self.layers, spent))
     }
 
     fn keep(&self, companions: &mut Companions<'_>) {
         let covered = self.covered();
-        let Some(checkpoint) = &mut companions.checkpoint else { return };
         if covered.is_empty() {
             return;
         }
+        let (Some(checkpoint), Some(job)) = (&mut companions.checkpoint, self.job()) else { return };
         let films = (self.session.film(), self.session.aovs());
         let trouble = checkpoint.keep(covered.end, |path| {
-            films::write(path, films, Covered::from_range(covered), &self.identity, &self.job())
+            films::write(path, films, Covered::from_range(covered), &self.identity, &job)
         });
         if let Some(trouble) = trouble {
             let warning = format!("the render goes on, but cannot be kept for now: {trouble}");
@@ -289,10 +301,16 @@ impl Run<'_> {
     }
 
     fn show(&self, last: bool, companions: &mut Companions<'_>) {
-        let trouble = companions.previews.show(last, || {
+        let trouble = if last {
             // With what there is of a step that was stopped; between steps there is none.
-            if last { self.session.picture().0.develop() } else { self.session.film().develop() }
-        });
+            let film = self.session.picture().0;
+            if film.iterations() == 0 {
+                return;
+            }
+            companions.previews.show(true, || film.develop())
+        } else {
+            companions.previews.show(false, || self.session.film().develop())
+        };
         for warning in trouble {
             self.watch.aside(|| companions.messages.warning(&warning));
         }
@@ -301,8 +319,11 @@ impl Run<'_> {
     /// Tells how far the render is; how noisy the picture is at most once a second, and in a hundredth of the time.
     fn tell(&mut self) {
         let per_pass = u64::from(self.per_pass.max(1));
-        let pass = self.sample() / per_pass + 1;
-        let of = self.plan.end(self.per_pass).map(|end| format!(" of {}", end.div_ceil(per_pass)));
+        let pass = self.sample() / per_pass;
+        let first = self.plan.first_sample(self.per_pass) / per_pass;
+        // Numbers from 0, as everywhere.
+        let of = self.plan.end(self.per_pass).map(|end| end.div_ceil(per_pass).saturating_sub(1));
+        let of = of.map(|last| format!(" (of {first} to {last})"));
         let text = format!("pass {pass}{}", of.unwrap_or_default());
         let due = Duration::from_secs(1).max(100 * self.telling);
         let noise = if self.watch.is_visible() && self.told.elapsed() >= due {

@@ -126,7 +126,7 @@ impl Report<'_> {
             messages.warning("what is seen in mirrors and through glass is left out by ptracer");
         }
         let (film, _) = &rendered.picture;
-        if film.iterations() > 0 && !rendered.has_film() {
+        if rendered.has_picture() && !rendered.has_film() {
             messages.warning("stopped before every pixel had a sample: the rest of the picture is black");
         }
         for map in self.maps().iter().filter(|map| map.plan.limited && map.numbers.paths > 0) {
@@ -172,13 +172,17 @@ impl Report<'_> {
                 ));
             }
         }
-        if film.iterations() == 0 {
+        if !rendered.has_picture() {
             messages.warning("stopped before the first samples were complete: no picture is written");
         } else if self.plan.range.is_some() && self.outputs.iter().any(|o| o.kind != Kind::Film) {
             let part = films::passes(std::slice::from_ref(&rendered.covered), rendered.samples_per_pass());
             messages.note(&format!("the pictures show a part of the render only: {part}"));
         }
-        if rendered.statistics.samples_per_pixel == 0 && rendered.has_film() {
+        if self.checkpoint.is_some() && !rendered.has_film() {
+            messages.warning("stopped before every pixel had a sample: there is no checkpoint");
+        }
+        let nothing_new = rendered.statistics.samples_per_pixel == 0 && rendered.has_film();
+        if nothing_new && rendered.ended == Ended::Finished {
             let more =
                 if self.plan.range.is_some() { "" } else { ": for more, say --passes, --spp or --time" };
             messages.note(&format!("everything was rendered before{more}"));
@@ -351,7 +355,7 @@ impl Report<'_> {
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
             "outputs": outputs,
-            "layers": r.job.layers.iter().map(LayerPlan::name).collect::<Vec<_>>(),
+            "layers": r.layers.iter().map(LayerPlan::name).collect::<Vec<_>>(),
             "messages": warnings,
         })
     }

@@ -25,7 +25,7 @@ pub fn run(args: &ResumeArgs) -> Result<Exit, Failure> {
     } else {
         args.outputs.clone()
     };
-    render::go(&of_this_run(flags, args), &outputs, Some((begun, &args.limits)))
+    render::go(&of_this_run(flags, args), &outputs, Some((begun, &args.limits.into())))
 }
 
 /// The flags of the job, where those of this run do not take their place.

@@ -1,7 +1,7 @@
 //! Pictures for the viewer tev, <https://github.com/Tom94/tev>.
 
 use std::io;
-use std::net::{SocketAddr, TcpStream};
+use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use nephroid::texture::Image;
@@ -14,15 +14,16 @@ const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// A viewer and the picture that it shows of us.
 pub struct Viewer {
-    address: SocketAddr,
+    /// HOST:PORT.
+    address: String,
     name: String,
     client: Option<TevClient>,
 }
 
 impl Viewer {
     /// A viewer that is called when there is a picture.
-    pub fn new(address: SocketAddr, name: &str) -> Self {
-        Self { address, name: name.to_owned(), client: None }
+    pub fn new(address: &str, name: &str) -> Self {
+        Self { address: address.to_owned(), name: name.to_owned(), client: None }
     }
 
     /// Shows a picture, which has the same size each time. After an error, there is no more to be had of this viewer.
@@ -37,7 +38,7 @@ impl Viewer {
         let client = match &mut self.client {
             Some(client) => client,
             None => {
-                let stream = TcpStream::connect_timeout(&self.address, PATIENCE)?;
+                let stream = call(&self.address)?;
                 stream.set_write_timeout(Some(PATIENCE))?;
                 stream.set_nodelay(true)?;
                 let mut client = TevClient::wrap(stream);
@@ -65,4 +66,16 @@ impl Viewer {
             data: &data,
         })
     }
+}
+
+/// Looks the name up, and tries all addresses that it has: a viewer may listen at one of them only.
+fn call(address: &str) -> io::Result<TcpStream> {
+    let mut last = io::Error::new(io::ErrorKind::NotFound, "the name has no address");
+    for one in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&one, PATIENCE) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
 }

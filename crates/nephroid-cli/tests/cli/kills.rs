@@ -31,7 +31,8 @@ fn survives(seed: u64, way: &[&str]) {
     let begun = Instant::now();
     dir.run(&[&way[..], &["--threads", "2", "-o", "whole.exr", "-o", "whole.film"]].concat()).ends_with(0);
     let took = begun.elapsed();
-    let checkpoint = ["--checkpoint", "kept.film", "--checkpoint-every", "0.01"];
+    let total = dir.sums("whole.film").2.total();
+    let checkpoint = ["--checkpoint", "kept.film", "--checkpoint-every", "0.001"];
     let first = [&way[..], &checkpoint, &["-o", "kept.exr"]].concat();
     let (kills, mut next, mut samples) = (kills(), fractions(seed), Vec::new());
     for start in 0.. {
@@ -47,15 +48,19 @@ fn survives(seed: u64, way: &[&str]) {
             break;
         }
         let mut child = dir.command(&args).stderr(Stdio::inherit()).spawn().unwrap();
-        // Nothing is kept before the pilot is done, and the first step after it.
-        let moment = took.mul_f64(0.05 + next() * 1.5 / kills as f64);
-        std::thread::sleep(moment);
+        if start == 0 {
+            // Nothing is kept before the pilot is done, and the first step after it: kill it as soon as there is.
+            dir.wait_for("kept.film");
+        } else {
+            std::thread::sleep(took.mul_f64(0.05 + next() * 1.5 / kills as f64));
+        }
         // It may be done already; what is kept is then finished, and going on with it does no harm.
         child.kill().unwrap();
         child.wait().unwrap();
     }
     println!("seed {seed}: killed {kills} times, {took:?} in one go, samples at each start: {samples:?}");
     assert!(samples.is_sorted());
+    assert!(samples.iter().any(|n| (1..total).contains(n)), "no start found a part of {total} samples");
     dir.are_the_same("whole", "kept");
 }
 

@@ -30,7 +30,7 @@ fn parts_in_any_order_are_the_whole_to_the_bit() {
             let run =
                 dir.run(&["merge", &a, &b, &c, "-o", "sum.exr", "-o", "sum.film", "--json"]).ends_with(0);
             assert_eq!(run.stderr, "");
-            assert_eq!(run.json()["missing"], serde_json::Value::Null);
+            assert_eq!(run.json()["missing"], serde_json::json!([]));
             dir.are_the_same("whole", "sum");
         }
         // Of the sum more can be rendered, as of the whole.
@@ -87,6 +87,11 @@ fn overlaps_are_refused_and_gaps_are_listed() {
     let run = dir.run(&args).ends_with(0).says("missing is passes 2 to 3, passes 6 to 7");
     run.says("before it can be gone on with");
     assert!(dir.files().contains(&"x.exr".to_owned()));
+    let run = dir.run(&["merge", "4..6.film", "0..2.film", "-o", "y.exr", "--json"]).ends_with(0);
+    assert_eq!(run.json()["missing"], serde_json::json!([[4, 8], [12, 16]]));
+    let run = dir.run(&["merge", "4..6.film", "0..2.film", "-o", "z.exr", "--complete"]).ends_with(4);
+    run.says("missing is passes 2 to 3, passes 6 to 7");
+    assert!(!dir.files().contains(&"z.exr".to_owned()));
     dir.run(&["resume", "x.film"]).ends_with(4).says("passes 0 to 1, passes 4 to 5");
 }
 
@@ -100,5 +105,8 @@ fn ranges_must_be_of_the_whole() {
     usage(&["--pass-range", "3"], "write A..B");
     usage(&["--pass-range", "3..9", "--passes", "8"], "the whole render has --passes 8");
     usage(&["--pass-range", "0..1", "--spp", "8"], "say with --passes");
+    usage(&["--pass-range", "0..1", "--spp", "2", "--passes", "4"], "--spp 2 is too little for --passes 4");
+    usage(&["--pass-range", "0..1", "--spp", "8", "--passes", "8", "--integrator", "ppm"], "without --spp");
+    usage(&["--pass-range", "+1..2"], "write A..B");
     assert!(dir.files().is_empty());
 }

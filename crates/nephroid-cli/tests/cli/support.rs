@@ -106,6 +106,16 @@ impl Dir {
         command
     }
 
+    /// Waits until a file is there, for a minute at most.
+    #[track_caller]
+    pub fn wait_for(&self, name: &str) {
+        let begun = std::time::Instant::now();
+        while !self.path(name).exists() {
+            assert!(begun.elapsed().as_secs() < 60, "{name} does not come");
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
+
     pub fn run(&self, args: &[&str]) -> Run {
         Run::of(self.command(args).output().unwrap())
     }

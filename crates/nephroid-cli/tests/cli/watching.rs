@@ -66,6 +66,8 @@ fn a_viewer_that_is_not_there_or_goes_away_is_told_once() {
     let (address, _) = viewer(1);
     let large = ["--tev", &address, "--resolution", "400x400", "--spp", "1", "--integrator", "path"];
     render(&dir, &large).ends_with(0);
+    let run = render(&dir, &["--tev", "no-such-name.invalid:14158"]).ends_with(0);
+    run.says("warning: no more pictures for tev: no-such-name.invalid:14158: ");
     dir.run(&["render", "a.xml", "--tev", "nowhere"]).ends_with(2).says("write HOST:PORT");
 }
 

@@ -2,7 +2,8 @@
 const SHOWN: usize = 12;
 
 /// In words, where two lists of (what, value) differ; empty if they say the same. Each list comes with the name
-/// of its file. The order of the entries does not matter.
+/// of its file. The order of the entries does not matter. What follows from another difference is left out:
+/// `integrator …` where `integrator` differs, and `decided: …` where anything else does.
 pub fn identity_differences(
     (first, a): (&str, &[(String, String)]),
     (second, b): (&str, &[(String, String)]),
@@ -14,15 +15,22 @@ pub fn identity_differences(
         Some(other) if *one == other => None,
         Some(other) => {
             let [one, other] = shown(one, &other);
-            Some(format!("{what}: {one} and {other}"))
+            Some((what, format!("{what}: {one} and {other}")))
         }
-        None => Some(format!("only in {first}: {what}")),
+        None => Some((what, format!("only in {first}: {what}"))),
     });
     let of_second = b
         .iter()
         .filter(|(what, _)| value(a, what).is_none())
-        .map(|(what, _)| format!("only in {second}: {what}"));
-    of_first.chain(of_second).collect()
+        .map(|(what, _)| (what, format!("only in {second}: {what}")));
+    let all: Vec<(&String, String)> = of_first.chain(of_second).collect();
+    let is_decided = |what: &str| what.starts_with("decided:");
+    let only_decided = all.iter().all(|(what, _)| is_decided(what));
+    let other_integrator = all.iter().any(|(what, _)| *what == "integrator");
+    let follows = |what: &str| {
+        (is_decided(what) && !only_decided) || (other_integrator && what.starts_with("integrator "))
+    };
+    all.iter().filter(|(what, _)| !follows(what)).map(|(_, text)| text.clone()).collect()
 }
 
 /// Two values that differ, hashes shortened if that leaves them different.
@@ -61,6 +69,26 @@ mod tests {
             ]
         );
         assert!(identity_differences(("a", &a), ("a", &a)).is_empty());
+    }
+
+    #[test]
+    fn what_follows_from_a_difference_is_left_out() {
+        let a = list(&[
+            ("integrator", "path"),
+            ("integrator depth", "8"),
+            ("seed", "0"),
+            ("decided: paths", "3"),
+        ]);
+        let mut b = list(&[
+            ("integrator", "ppm"),
+            ("integrator kernel", "box"),
+            ("seed", "1"),
+            ("decided: paths", "4"),
+        ]);
+        let differences = |b: &[(String, String)]| identity_differences(("a", &a), ("b", b));
+        assert_eq!(differences(&b), ["integrator: path and ppm", "seed: 0 and 1"]);
+        b[..3].clone_from_slice(&a[..3]);
+        assert_eq!(differences(&b), ["decided: paths: 3 and 4"]);
     }
 
     #[test]
