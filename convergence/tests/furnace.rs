@@ -84,7 +84,11 @@ fn path(max_depth: Option<u32>) -> Method {
 /// A path tracer and the ways of the photon mapper that share no code with one another.
 fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
     let with = |config: PhotonMapperConfig| Method::PhotonMapper(PhotonMapperConfig { max_depth, ..config });
-    let ppm = |config: PhotonMapperConfig| progressive(PhotonMapperConfig { max_depth, ..config });
+    let ppm = |config: PhotonMapperConfig| match progressive(PhotonMapperConfig { max_depth, ..config }) {
+        // Three iterations: few samples in each are enough.
+        Method::Ppm(config) => Method::Ppm(PpmConfig { samples_per_pixel: Some(1), ..config }),
+        method => method,
+    };
     vec![
         ("path", path(max_depth)),
         ("map", with(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),

@@ -1,23 +1,28 @@
-//! Pictures that must not depend on the unit of length, on where the scene lies, or on how many
-//! threads render it.
+//! Pictures that must not depend on the unit of length, on where the scene lies, on how many threads render it, or on
+//! where the render was interrupted.
 //!
 //! The tests by chance share the level [`ALPHA`] by Šidák's formula: on seeds chosen afresh, correct
 //! code would fail somewhere in this file with probability 1 %. The others compare bits.
 
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
-use nephroid::film::{Film, FilmSettings, Filter};
+use nephroid::film::{Aov, Film, FilmSettings, Filter};
 use nephroid::handle::Arena;
-use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig};
+use nephroid::integrator::{
+    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, VolumeEstimate,
+};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Media;
+use nephroid::observer::Silent;
 use nephroid::scene::Scene;
+use nephroid::session::{Place, RenderPlan, RenderSettings, Session};
 use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::{Image, Textures};
+use nephroid::transport::VolumeKind;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, light_tracer, means, session};
+use nephroid_convergence::{Builder, balls_in_fog, light_tracer, means, session};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// As many as the pairs of means compared.
@@ -114,11 +119,26 @@ fn shapes(b: &mut Builder) {
     b.sphere(Vec3::new(-1.0, 1.2, 0.0), 0.1, black).emission = Some(glow);
 }
 
-/// The path tracer, and the photon mapper with everything that has a length in it.
+/// The path tracer, and photon mappers with everything that has a length in it.
 /// So many paths are emitted for each map, or as many as a pilot finds to be needed.
 fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
     let mapper = PhotonMapperConfig { photons: 2000, caustic_photons: 500, emit, ..Default::default() };
+    let planned = PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() };
+    let planned = match emit {
+        Some(_) => PpmConfig { plan_photons: false, samples_per_pixel: Some(1), ..planned },
+        None => planned,
+    };
+    let limited = PhotonMapperConfig {
+        final_gather: FinalGather::Off,
+        max_radius: Some(0.3 * scale),
+        ..mapper.clone()
+    };
     vec![
+        ("ppm", Method::Ppm(planned.clone())),
+        (
+            "ppm, limited radius",
+            Method::Ppm(PpmConfig { mapper: limited.clone(), plan_photons: false, ..planned }),
+        ),
         ("path", Method::Path(PathConfig::default())),
         ("ptracer", light_tracer(None)),
         ("photon mapper", Method::PhotonMapper(mapper.clone())),
@@ -127,17 +147,10 @@ fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
             Method::PhotonMapper(PhotonMapperConfig {
                 direct: DirectSource::Map,
                 radius: Some(0.2 * scale),
-                ..mapper.clone()
-            }),
-        ),
-        (
-            "limited radius",
-            Method::PhotonMapper(PhotonMapperConfig {
-                final_gather: FinalGather::Off,
-                max_radius: Some(0.3 * scale),
                 ..mapper
             }),
         ),
+        ("limited radius", Method::PhotonMapper(limited)),
     ]
 }
 
@@ -174,14 +187,16 @@ fn scales_turns_and_moves_change_only_the_noise() {
         ("all of it", 0.3, turned.then(moved)),
     ];
     let unit = room(1.0, Transform::IDENTITY);
+    // A progressive render has three iterations.
+    let seeds_of = |method: &Method| if matches!(method, Method::Ppm(_)) { 10 } else { 24 };
     let references: Vec<MeanTest> = methods(1.0, Some(4000))
         .iter()
-        .map(|(_, m)| means(&unit, m, 4, 0..24).into_iter().collect())
+        .map(|(_, m)| means(&unit, m, 4, 0..seeds_of(m)).into_iter().collect())
         .collect();
     for (first_seed, (place, scale, to_world)) in (1..).map(|i| 100 * i).zip(places) {
         let world = room(scale, to_world);
         for ((name, method), reference) in methods(scale as f32, Some(4000)).iter().zip(&references) {
-            let seeds = first_seed..first_seed + 24;
+            let seeds = first_seed..first_seed + seeds_of(method);
             let estimates: MeanTest = means(&world, method, 4, seeds).into_iter().collect();
             let outcome = estimates.welch(reference);
             assert!(outcome.passes(sidak(ALPHA, TESTS)), "{name}, {place}: {outcome}");
@@ -195,7 +210,7 @@ fn threads_change_no_bit_and_seeds_do() {
     let world = room(1.0, Transform::IDENTITY);
     for (name, method) in methods(1.0, None) {
         let on = |threads: usize, seed: u64| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
             pool.install(|| film(&world, method.clone(), seed))
         };
         let alone = on(1, 1);
@@ -212,9 +227,98 @@ fn threads_change_nothing_in_the_statistics() {
     let world = room(1.0, Transform::IDENTITY);
     for (name, method) in methods(1.0, None) {
         let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
             pool.install(|| session(&world, method.clone(), 2, 1).statistics().clone())
         };
         assert_eq!(on(1), on(5), "{name}");
+    }
+}
+
+/// Balls in fog with all photon maps, read in each of the ways; the plan's numbers of samples are above one.
+fn methods_in_fog() -> Vec<(&'static str, Method)> {
+    let mapper = PhotonMapperConfig {
+        photons: 1000,
+        caustic_photons: 500,
+        volume_photons: Some(500),
+        ..PhotonMapperConfig::default()
+    };
+    let beams = PhotonMapperConfig { volume_kind: VolumeKind::Beams, ..mapper.clone() };
+    let march = PhotonMapperConfig { volume_estimate: VolumeEstimate::March, ..mapper.clone() };
+    let given = |mapper| {
+        let plan = PpmConfig { plan_photons: false, samples_per_pixel: Some(3), ..PpmConfig::default() };
+        Method::Ppm(PpmConfig { mapper, ..plan })
+    };
+    vec![
+        ("ppm in fog", Method::Ppm(PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() })),
+        ("ppm with beams", given(beams)),
+        ("ppm by marching", given(march)),
+        ("photon mapper in fog", Method::PhotonMapper(mapper)),
+    ]
+}
+
+/// A plan follows from the scene, the settings and the seed: made again, by any number of threads, it is the same.
+#[test]
+fn plans_are_the_same_each_time() {
+    let (room, fog) = (room(1.0, Transform::IDENTITY), balls_in_fog(12).build());
+    let of_fog = methods_in_fog().into_iter().map(|named| (&fog, named));
+    for (world, (name, method)) in methods(1.0, None).into_iter().map(|named| (&room, named)).chain(of_fog) {
+        let plan = |threads: usize, seed: u64| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let settings = RenderSettings { method: method.clone(), samples_per_pixel: 6, seed };
+            pool.install(|| RenderPlan::new(world, &settings, &Silent))
+        };
+        let first = plan(1, 1);
+        for threads in [1, 2, 7] {
+            assert_eq!(plan(threads, 1), first, "{name} on {threads} threads");
+        }
+        if name == "ppm" {
+            assert_ne!(plan(1, 2), first, "trials of another seed find the same");
+        }
+    }
+}
+
+/// Three iterations in two sessions, cut after every step, and each step in a session of its own, the last one first:
+/// the films are those of one session.
+#[test]
+fn parts_of_a_render_make_the_whole() {
+    let (room, fog) = (room(1.0, Transform::IDENTITY), balls_in_fog(12).build());
+    let of_fog = methods_in_fog().into_iter().map(|named| (&fog, named));
+    for (world, (name, method)) in methods(1.0, None).into_iter().map(|named| (&room, named)).chain(of_fog) {
+        let settings = RenderSettings { method, samples_per_pixel: 6, seed: 1 };
+        let plan = RenderPlan::new(world, &settings, &Silent);
+        let begin = |place: Place| {
+            Session::with_plan(world, settings.clone(), plan)
+                .with_aovs(&[Aov::Depth, Aov::Global])
+                .starting_at(place)
+        };
+        // The place, the film and the further values after each step.
+        let mut session =
+            Session::new(world, settings.clone(), &Silent).with_aovs(&[Aov::Depth, Aov::Global]);
+        let mut steps = vec![(session.place(), session.film().clone(), session.aovs().cloned())];
+        while session.place().iteration < 2 || !session.iteration_is_complete() {
+            assert!(session.step(&Silent), "nothing cancels");
+            steps.push((session.place(), session.film().clone(), session.aovs().cloned()));
+        }
+        let (_, whole, aovs) = &steps[steps.len() - 1];
+        assert!(whole.mean_luminance() > 0.01 && steps.len() >= 4, "{name}: something is rendered");
+        for (done, (place, film, further)) in steps[..steps.len() - 1].iter().enumerate() {
+            let mut rest =
+                begin(*place).with_films(film.clone(), further.clone()).expect("films of one render");
+            for _ in done + 1..steps.len() {
+                assert!(rest.step(&Silent), "nothing cancels");
+            }
+            assert!(rest.film() == whole, "{name} from {place:?}");
+            assert!(rest.aovs() == aovs.as_ref(), "further values of {name} from {place:?}");
+        }
+        let mut together: Option<Film> = None;
+        for (place, ..) in steps[..steps.len() - 1].iter().rev() {
+            let mut one = begin(*place);
+            assert!(one.step(&Silent), "nothing cancels");
+            match &mut together {
+                None => together = Some(one.film().clone()),
+                Some(film) => film.merge(one.film()).expect("films of one render"),
+            }
+        }
+        assert!(together.as_ref() == Some(whole), "{name}, step by step");
     }
 }

@@ -4,11 +4,12 @@
 //! Photon maps blur, and more so where surfaces meet; with as few photons as are sent here, that is forgiven as stated
 //! beside each scene: so much of the whole picture and twice that of a quarter of it. Beyond that the tests of the file
 //! share the level [`ALPHA`] by Šidák's formula: on seeds chosen afresh, correct code would fail somewhere with
-//! probability 1 %.
+//! probability 1 %. The difference of whole pictures has a standard error
+//! below 2.5 % everywhere, which is asserted, and mostly below 1 %; about eight of them are found.
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig};
+use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, PpmConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{Affine2, DVec3, Transform, Vec2, Vec3};
@@ -30,7 +31,7 @@ const BLOCK: usize = 8;
 const TESTS: usize = 9 * 4 * 5;
 
 /// Seeds of each method.
-const SEEDS: u64 = 12;
+const SEEDS: u64 = 8;
 
 /// The blocks and, last, the whole.
 fn parts(pictures: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -49,6 +50,8 @@ fn agree(name: &str, found: &[Vec<f64>], exact: &[Vec<f64>], bias: f64) {
         let found: MeanTest = found.iter().copied().collect();
         let outcome = found.welch(&exact);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{name}, part {part}: {outcome}");
+        let deviation = libm::hypot(found.standard_error(), exact.standard_error()) / exact.mean();
+        assert!(part < last || deviation < 0.025, "{name}: too few samples, {deviation}");
     }
 }
 
@@ -56,11 +59,12 @@ fn agree(name: &str, found: &[Vec<f64>], exact: &[Vec<f64>], bias: f64) {
 fn all_agree(b: Builder, specular: bool, bias: f64) {
     let world = b.build();
     assert_eq!(world.remarks(), []);
-    let exact = renders(&world, &volpath(None), 128, 0..SEEDS);
+    let exact = renders(&world, &volpath(None), 96, 0..SEEDS);
     if !specular {
         agree("ptracer", &renders(&world, &light_tracer(None), 64, 100..100 + SEEDS), &exact, 0.0);
     }
-    let mapper = PhotonMapperConfig { volume_photons: Some(10_000), ..photon_mapper(10_000) };
+    // Maps that few paths reach stay small: they would take most of the time.
+    let mapper = PhotonMapperConfig { volume_photons: Some(10_000), emit_max: 10, ..photon_mapper(10_000) };
     agree(
         "photon mapper",
         &renders(&world, &Method::PhotonMapper(mapper.clone()), 8, 200..200 + SEEDS),
@@ -68,17 +72,20 @@ fn all_agree(b: Builder, specular: bool, bias: f64) {
         bias,
     );
     for final_gather in [FinalGather::Auto, FinalGather::Off] {
-        let method = progressive(PhotonMapperConfig { final_gather, ..mapper.clone() });
+        let Method::Ppm(config) = progressive(PhotonMapperConfig { final_gather, ..mapper.clone() }) else {
+            unreachable!("it is progressive")
+        };
+        let method = Method::Ppm(PpmConfig { samples_per_pixel: Some(6), ..config });
         agree(&format!("ppm, gather {final_gather:?}"), &late(&world, &method), &exact, bias);
     }
 }
 
-/// Means of the iterations 20 to 22.
+/// Means of the iterations 20 and 21.
 fn late(world: &World, method: &Method) -> Vec<Vec<f64>> {
-    let iterations = [20, 21, 22].map(|i| single_iterations(world, method, i, 300..300 + SEEDS));
+    let iterations = [20, 21].map(|i| single_iterations(world, method, i, 300..300 + SEEDS));
     let mean = |seed: usize| {
         (0..SIDE * SIDE)
-            .map(|pixel| iterations.iter().map(|pictures| pictures[seed][pixel]).sum::<f64>() / 3.0)
+            .map(|pixel| iterations.iter().map(|pictures| pictures[seed][pixel]).sum::<f64>() / 2.0)
             .collect()
     };
     (0..SEEDS as usize).map(mean).collect()
