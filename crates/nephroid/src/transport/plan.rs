@@ -121,6 +121,12 @@ impl PhotonPlan {
 }
 
 impl PhotonPlan {
+    /// Photons that all maps together are expected to hold.
+    pub(crate) fn expected_photons(&self) -> u64 {
+        let maps = [self.global, self.caustic, self.volume, self.volume_caustic];
+        maps.iter().map(|map| map.expected_photons).sum()
+    }
+
     /// A plan for so many times the photons of each map: the global, the caustic, the volume and its caustic one.
     pub(crate) fn scaled(&self, world: &World, settings: &WalkSettings, factors: [f64; 4]) -> Self {
         let scale = |map: &MapPlan, factor: f64| {

@@ -8,13 +8,13 @@ use crate::transport::PhotonPlan;
 const STORED_COST: f64 = 1.0;
 
 /// Estimates of later iterations blur less, and what photons make them vary by grows. This is for the sixteenth.
-const LATER: f64 = 2.5;
+pub(super) const LATER: f64 = 2.5;
 
 /// Gather rays of a sample at most.
 const MOST_GATHER_RAYS: f64 = 16.0;
 
 /// Camera samples of a pixel in an iteration at most.
-const MOST_SAMPLES: u32 = 16;
+pub(super) const MOST_SAMPLES: u32 = 16;
 
 /// Photons in all maps together, at least and at most.
 const PHOTONS: [f64; 2] = [20_000.0, 4_000_000.0];

@@ -3,6 +3,8 @@
 //! before. Their mean converges. Each follows from its index, so none waits for another.
 
 mod balance;
+#[cfg(test)]
+mod balance_tests;
 mod config;
 mod trial;
 
@@ -14,7 +16,7 @@ use crate::photon_map::Blur;
 use crate::sampling::{Key, Stream};
 use crate::transport::{MapPlan, PhotonPlan};
 use crate::world::World;
-use balance::{GatherRays, Variances, balance};
+use balance::{GatherRays, MOST_SAMPLES, Variances, balance};
 
 /// Photons wanted in each map of a trial …
 const TRIAL_PHOTONS: u64 = 30_000;
@@ -82,10 +84,16 @@ pub(crate) fn plan(
     let variances = Variances::of(&found.pixels);
     let (factors, mut camera) = balance(&variances, found.costs, &tried, rays, pixels);
     let walks = config.mapper.walk_settings();
-    let photons = match config.plan_photons {
-        true => tried.scaled(world, &walks, factors),
-        false => PhotonPlan::by_pilot(world, &walks, &config.mapper.targets(), seed),
-    };
+    let mut photons = tried.scaled(world, &walks, factors);
+    if !config.plan_photons {
+        let best = photons.expected_photons();
+        photons = PhotonPlan::by_pilot(world, &walks, &config.mapper.targets(), seed);
+        // As many samples as suit so many photons.
+        let units = f64::from(camera.samples_per_pixel / camera.stride);
+        let units = units * photons.expected_photons() as f64 / best.max(1) as f64;
+        let most = f64::from(MOST_SAMPLES / camera.stride);
+        camera.samples_per_pixel = camera.stride * units.round().clamp(1.0, most) as u32;
+    }
     camera.neighbours = config.neighbours(&photons);
     if let Some(samples) = config.samples_per_pixel {
         camera.samples_per_pixel = samples.clamp(1, 1 << 16);
