@@ -239,9 +239,8 @@ impl Report<'_> {
         let noise = r.noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
         let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr){noise}", r.picture.0.mean_luminance());
         if let Some(checkpoint) = self.checkpoint {
-            let (path, n) = (checkpoint.path().display(), checkpoint.written);
-            let _ =
-                writeln!(out, "kept: {path}, written {n} times in {:.2} s", checkpoint.spent.as_secs_f64());
+            let (path, times) = (checkpoint.path().display(), plural(checkpoint.written, "time"));
+            let _ = writeln!(out, "kept: {path}, written {times} in {:.2} s", checkpoint.spent.as_secs_f64());
         }
         if !self.outputs.is_empty() {
             let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
