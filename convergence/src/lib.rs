@@ -17,8 +17,8 @@ pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance,
 use slopes::iterate_to;
 pub use slopes::{Errors, Part, Series, iterated, log_slope, single_iterations};
 pub use view::{
-    block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, pixel_origins,
-    progressive, renders,
+    block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, photons_of,
+    pixel_origins, progressive, renders,
 };
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,

@@ -5,7 +5,10 @@ use nephroid::camera::Projection;
 use nephroid::integrator::{
     DirectSource, FinalGather, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show,
 };
+use nephroid::laboratory::{MapPhotons, record_photons};
 use nephroid::math::{DVec3, Transform, Vec3};
+use nephroid::observer::Silent;
+use nephroid::session::RenderSettings;
 use nephroid::world::World;
 
 use crate::{Builder, session};
@@ -119,4 +122,16 @@ pub fn progressive(mapper: PhotonMapperConfig) -> Method {
 /// The light tracer, with paths of so many segments.
 pub fn light_tracer(max_depth: Option<u32>) -> Method {
     Method::LightTracer(LightTracerConfig { max_depth })
+}
+
+/// The photons of an iteration of the photon mapper; `None` is for those who cancel.
+pub fn photons_of(
+    world: &World,
+    config: &PhotonMapperConfig,
+    samples_per_pixel: u32,
+    seed: u64,
+    iteration: u64,
+) -> Option<MapPhotons> {
+    let method = Method::PhotonMapper(config.clone());
+    record_photons(world, &RenderSettings { method, samples_per_pixel, seed }, iteration, &Silent)
 }

@@ -4,15 +4,12 @@ use nephroid::color::Rgb;
 use nephroid::integrator::{
     DirectSource, LightPart, MapName, Method, PhotonMapperConfig, Show, VolumeEstimate,
 };
-use nephroid::laboratory::{
-    InspectedSample, Inspector, MapPhotons, PhotonColor, PhotonPicture, photon_picture, record_photons,
-};
+use nephroid::laboratory::{InspectedSample, Inspector, PhotonColor, PhotonPicture, photon_picture};
 use nephroid::observer::Silent;
 use nephroid::photon_map::VolumePhoton;
 use nephroid::session::RenderSettings;
 use nephroid::transport::{Fog, InMedia, PhotonTargets, VolumeKind, WalkSettings, volume_pass};
-use nephroid::world::World;
-use nephroid_convergence::{balls_in_fog, glossy_ball_in_fog, render, session, three_media};
+use nephroid_convergence::{balls_in_fog, glossy_ball_in_fog, photons_of, render, session, three_media};
 
 const SIDE: u32 = 8;
 const SEED: u64 = 5;
@@ -149,16 +146,4 @@ fn photons_in_media_show_through_null_surfaces_and_not_through_walls() {
     assert!(4 * seen > 3 * all, "{seen} of {all}");
     let (seen, all) = draw(true);
     assert!(all > 500 && seen == 0, "{seen} of {all}");
-}
-
-/// The photons of an iteration of the photon mapper, if nothing cancels.
-fn photons_of(
-    world: &World,
-    config: &PhotonMapperConfig,
-    samples_per_pixel: u32,
-    seed: u64,
-    iteration: u64,
-) -> Option<MapPhotons> {
-    let method = Method::PhotonMapper(config.clone());
-    record_photons(world, &RenderSettings { method, samples_per_pixel, seed }, iteration, &Silent)
 }

@@ -7,9 +7,7 @@ use nephroid::film::{Aov, AovImage, Filter};
 use nephroid::integrator::{
     Components, DirectSource, FinalGather, LightPart, MapName, Method, PathConfig, PhotonMapperConfig, Show,
 };
-use nephroid::laboratory::{
-    InspectedSample, Inspector, MapPhotons, PhotonColor, PhotonPicture, photon_picture, record_photons,
-};
+use nephroid::laboratory::{InspectedSample, Inspector, PhotonColor, PhotonPicture, photon_picture};
 use nephroid::material::Material;
 use nephroid::math::{Transform, Vec3};
 use nephroid::observer::Silent;
@@ -17,7 +15,7 @@ use nephroid::session::{RenderSettings, Session};
 use nephroid::shape::Geometry;
 use nephroid::texture::Image;
 use nephroid::world::World;
-use nephroid_convergence::Builder;
+use nephroid_convergence::{Builder, photons_of};
 
 const SIDE: u32 = 12;
 
@@ -293,16 +291,4 @@ fn pictures_show_photons_where_they_lie() {
         let expected: usize = legend.first().map_or(0, |entry| entry.photons);
         assert!(lit <= 9 * expected && expected <= 1, "{color:?}: {lit} pixels of {expected} photons");
     }
-}
-
-/// The photons of an iteration of the photon mapper, if nothing cancels.
-fn photons_of(
-    world: &World,
-    config: &PhotonMapperConfig,
-    samples_per_pixel: u32,
-    seed: u64,
-    iteration: u64,
-) -> Option<MapPhotons> {
-    let method = Method::PhotonMapper(config.clone());
-    record_photons(world, &RenderSettings { method, samples_per_pixel, seed }, iteration, &Silent)
 }
