@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig};
+use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig};
 use nephroid::observer::Silent;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
@@ -33,6 +33,10 @@ fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
         "ppm" => {
             let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
             Method::Ppm(PpmConfig { mapper, ..Default::default() })
+        }
+        "vcm" => {
+            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
+            Method::Vcm(VcmConfig { mapper, ..Default::default() })
         }
         "ptracer" => Method::LightTracer(LightTracerConfig { max_depth }),
         "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),

@@ -1,6 +1,6 @@
 //! Which integrator renders, and with which parameters.
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PpmConfig};
+use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PpmConfig, VcmConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
 use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
@@ -17,6 +17,8 @@ pub enum Integrator {
     PhotonMapper,
     /// Progressive photon mapping.
     Ppm,
+    /// Vertex connection and merging.
+    Vcm,
     /// Path tracing.
     Path,
     /// Path tracing through media.
@@ -33,11 +35,12 @@ impl Integrator {
         match name {
             "photonmapper" => Ok(Self::PhotonMapper),
             "ppm" => Ok(Self::Ppm),
+            "vcm" => Ok(Self::Vcm),
             "path" => Ok(Self::Path),
             "volpath" => Ok(Self::VolPath),
             "ptracer" => Ok(Self::PTracer),
             "scene" => Ok(Self::Scene),
-            _ => Err("it must be photonmapper, ppm, path, volpath, ptracer or scene".to_owned()),
+            _ => Err("it must be photonmapper, ppm, vcm, path, volpath, ptracer or scene".to_owned()),
         }
     }
 }
@@ -55,11 +58,12 @@ pub fn choose(
         Some(Integrator::Scene) => by_scene(request)?,
         Some(other) => other,
         None if request.name == "ppm" => Integrator::Ppm,
+        None if request.name == "vcm" => Integrator::Vcm,
         None => Integrator::PhotonMapper,
     };
     let mut draft = Draft::default();
     let complaints = match request.name.as_str() {
-        "photonmapper" | "ppm" => read_all(request, &mut draft),
+        "photonmapper" | "ppm" | "vcm" => read_all(request, &mut draft),
         _ => read_depth(request, &mut draft),
     };
     let (errors, warnings): (Vec<_>, Vec<_>) =
@@ -70,7 +74,7 @@ pub fn choose(
     for warning in &warnings {
         messages.diagnostic(warning);
     }
-    if request.name != "ppm" {
+    if !matches!(request.name.as_str(), "ppm" | "vcm") {
         // Numbers that suit one pass are no reason not to plan.
         draft.forget_what_came_in();
     }
@@ -78,7 +82,7 @@ pub fn choose(
         // Checked when the command line was read.
         parameter.set(&mut draft, value).map_err(Failure::Usage)?;
     }
-    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "ppm" | "") {
+    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "ppm" | "vcm" | "") {
         messages.note(&format!(
             "the scene asks for the integrator \"{}\"; rendering with photonmapper (see --integrator)",
             request.name
@@ -102,6 +106,9 @@ pub fn choose(
         return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
     }
     media_flags::settle(&mut config, file, flags, messages)?;
+    if chosen == Integrator::Vcm {
+        return Ok(Method::Vcm(VcmConfig { mapper: config, ..VcmConfig::default() }));
+    }
     if chosen == Integrator::Ppm {
         return Ok(Method::Ppm(PpmConfig {
             mapper: config,
@@ -130,6 +137,7 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
     match request.name.as_str() {
         "" | "photonmapper" => Ok(Integrator::PhotonMapper),
         "ppm" => Ok(Integrator::Ppm),
+        "vcm" => Ok(Integrator::Vcm),
         "path" => Ok(Integrator::Path),
         "volpath" | "volpathmis" => Ok(Integrator::VolPath),
         "ptracer" => Ok(Integrator::PTracer),
@@ -202,6 +210,13 @@ pub fn describe(method: &Method) -> Value {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
             object.insert("plan_photons".to_owned(), json!(plan_photons));
             object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
+        }
+        Method::Vcm(VcmConfig { mapper, light_paths, connections, merging, correlation }) => {
+            object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
+            object.insert("light_paths".to_owned(), json!(light_paths));
+            object.insert("connections".to_owned(), json!(connections));
+            object.insert("merging".to_owned(), json!(merging));
+            object.insert("correlation".to_owned(), json!(correlation));
         }
         Method::Path(PathConfig { max_depth, direct_lights, .. }) => {
             let config = nephroid::integrator::PhotonMapperConfig {

@@ -12,7 +12,7 @@ pub const ENTRIES: &str = "decided:";
 pub fn to_json(plan: &RenderPlan) -> Value {
     let RenderPlan { photons, camera } = *plan;
     let PhotonPlan { global, caustic, volume, volume_caustic } = photons;
-    let CameraPlan { samples_per_pixel, stride, gather_rays, neighbours } = camera;
+    let CameraPlan { samples_per_pixel, stride, gather_rays, neighbours, merging_radius } = camera;
     json!({
         "photons": {
             "global": map(global),
@@ -25,6 +25,7 @@ pub fn to_json(plan: &RenderPlan) -> Value {
             "stride": stride,
             "gather_rays": gather_rays,
             "neighbours": neighbours,
+            "merging_radius": f64::from(merging_radius),
         },
     })
 }
@@ -50,6 +51,7 @@ pub fn from_json(value: &Value) -> Option<RenderPlan> {
             stride: small("stride").filter(|n| *n > 0)?,
             gather_rays,
             neighbours: [neighbours(0)?, neighbours(1)?],
+            merging_radius: camera["merging_radius"].as_f64()? as f32,
         },
     })
 }
@@ -103,6 +105,7 @@ mod tests {
                 stride: 4,
                 gather_rays: Some(13),
                 neighbours: [50, 60],
+                merging_radius: 0.1,
             },
         }
     }
@@ -136,7 +139,7 @@ mod tests {
     #[test]
     fn entries_name_every_number() {
         let entries = entries(&plan());
-        assert_eq!(entries.len(), 16);
+        assert_eq!(entries.len(), 17);
         assert!(entries.contains(&("decided: photons caustic paths".to_owned(), u64::MAX.to_string())));
         assert!(entries.contains(&("decided: camera gather rays".to_owned(), "13".to_owned())));
     }

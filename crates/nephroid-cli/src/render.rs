@@ -5,7 +5,6 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use nephroid::integrator::Method;
 use nephroid::session::RenderSettings;
 use nephroid_formats::film_file::identity_differences;
 use nephroid_formats::image::{MAX_PIXELS, check_writable};
@@ -116,7 +115,7 @@ fn prepare(
             begun.job.limits.resumed(limits, begun.job.spent, done)?
         }
         None => {
-            let progressive = matches!(method, Method::Ppm(_));
+            let progressive = method.is_progressive();
             let whole = Plan::new(&args.limits, file.sample_count);
             whole.part(&args.limits, args.session.pass_range, progressive)?
         }

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use nephroid::integrator::Method;
 use nephroid::session::{MapStatistics, RenderSettings};
 use nephroid::transport::{Balance, MapPlan, VolumeKind};
 use serde_json::{Value, json};
@@ -79,7 +78,7 @@ impl Report<'_> {
         let s = &self.rendered.statistics;
         let plan = s.plan.photons;
         // What a progressive render wants is what it planned.
-        let planned = matches!(self.settings.method, Method::Ppm(_));
+        let planned = self.settings.method.is_progressive();
         let wanted = |asked: u64, plan: MapPlan| if planned { plan.expected_photons } else { asked };
         let what = "photons";
         let mut maps = vec![

@@ -5,6 +5,7 @@ mod path;
 mod photon_mapper;
 mod probe;
 pub(crate) mod progressive;
+pub(crate) mod vcm;
 
 pub use light_tracer::LightTracerConfig;
 pub(crate) use light_tracer::{Brought, LightTracer};
@@ -15,6 +16,7 @@ pub(crate) use photon_mapper::{Guides, Maps, PhotonMapper, Turn};
 pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Passed, Probe};
 pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 pub use progressive::PpmConfig;
+pub use vcm::VcmConfig;
 
 use crate::color::Rgb;
 use crate::film::Aov;
@@ -26,6 +28,8 @@ pub enum Method {
     PhotonMapper(PhotonMapperConfig),
     /// Progressive photon mapping.
     Ppm(PpmConfig),
+    /// Vertex connection and merging.
+    Vcm(VcmConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
     /// Unbiased light tracing to the camera, the reference for caustics.
@@ -38,10 +42,16 @@ impl Method {
         match self {
             Self::PhotonMapper(_) => "photonmapper",
             Self::Ppm(_) => "ppm",
+            Self::Vcm(_) => "vcm",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
             Self::LightTracer(_) => "ptracer",
         }
+    }
+
+    /// Whether its iterations are planned, short, and one estimate each.
+    pub fn is_progressive(&self) -> bool {
+        matches!(self, Self::Ppm(_) | Self::Vcm(_))
     }
 
     /// How photons are traced and read, if it is a method that does.
@@ -49,9 +59,18 @@ impl Method {
         match self {
             Self::PhotonMapper(config) => Some(config),
             Self::Ppm(config) => Some(&config.mapper),
+            Self::Vcm(config) => Some(&config.mapper),
             Self::Path(_) | Self::LightTracer(_) => None,
         }
     }
+}
+
+/// What was emitted and stored of one map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MapTotals {
+    pub paths: u64,
+    pub photons: usize,
+    pub bytes: usize,
 }
 
 impl Default for Method {

@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
 use crate::integrator::{
     Components, Estimator, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
-    PpmConfig, Turn,
+    PpmConfig, Turn, vcm,
 };
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -91,6 +91,13 @@ impl<'w> Inspector<'w> {
                 let mapper = PhotonMapper::new(self.world, &config, &maps, &guides, &self.plan.camera);
                 self.take(&mapper, Some(&catalogues), taken);
                 (self.maps, self.guides) = (Some((maps, catalogues)), Some(guides));
+            }
+            Method::Vcm(config) => {
+                let RenderPlan { photons, camera } = self.plan;
+                let number = (self.settings.seed, self.iteration);
+                let iteration = vcm::Iteration::new(self.world, &config, &photons, &camera, number, observer);
+                let Some(iteration) = iteration else { return false };
+                self.take(&iteration.camera(self.world, &config, &camera), None, taken);
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
@@ -181,7 +188,7 @@ impl<'w> Inspector<'w> {
             probe.finish(&mut report);
             self.inspected.push(report);
         }
-        if matches!(self.settings.method, Method::Ppm(_)) {
+        if self.settings.method.is_progressive() {
             sum = sum.as_one_estimate();
         }
         self.film.add_iteration(&[sum]);

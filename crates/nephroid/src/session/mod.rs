@@ -13,6 +13,7 @@ pub use statistics::{MapStatistics, Statistics};
 use crate::film::{Aov, AovFilm, Film, MergeError};
 use crate::integrator::{
     CameraPlan, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
+    VcmConfig, vcm,
 };
 use crate::observer::Observer;
 use crate::transport::{CameraPass, Ledger};
@@ -24,7 +25,7 @@ const STEP_SAMPLES: u32 = 4;
 /// Camera samples of each pixel in the next step of an iteration that has so many left to take. Those of a progressive
 /// iteration share photons and are few, and so they are one step and one estimate.
 pub(crate) fn samples_of_step(method: &Method, left: u32) -> u32 {
-    if matches!(method, Method::Ppm(_)) { left } else { STEP_SAMPLES.min(left) }
+    if method.is_progressive() { left } else { STEP_SAMPLES.min(left) }
 }
 
 /// The samples of a step. Those of progressive iterations are numbered through all of them: they are as well spread as
@@ -35,9 +36,10 @@ pub(crate) fn camera_pass_of(
     place: Place,
     samples: u32,
 ) -> CameraPass {
-    let (iteration, first_sample) = match settings.method {
-        Method::Ppm(_) => (0, place.samples_before(camera.samples_per_pixel)),
-        _ => (place.iteration, u64::from(place.samples)),
+    let (iteration, first_sample) = if settings.method.is_progressive() {
+        (0, place.samples_before(camera.samples_per_pixel))
+    } else {
+        (place.iteration, u64::from(place.samples))
     };
     CameraPass { seed: settings.seed, iteration, first_sample, samples }
 }
@@ -142,6 +144,7 @@ impl<'w> Session<'w> {
         let done = match self.settings.method.clone() {
             Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
             Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
+            Method::Vcm(config) => self.vcm_step(&config, &pass, observer),
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
                 let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
@@ -151,7 +154,7 @@ impl<'w> Session<'w> {
                 let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
                 let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
-                exposed.add(&light);
+                exposed.add(&light.brought());
                 self.take(exposed)
             }
         };
@@ -230,6 +233,22 @@ impl<'w> Session<'w> {
         if matches!(self.settings.method, Method::Ppm(_)) {
             exposed.count_as_one_estimate();
         }
+        self.take(exposed)
+    }
+
+    fn vcm_step(&mut self, config: &VcmConfig, pass: &CameraPass, observer: &dyn Observer) -> bool {
+        let (world, plan) = (self.world, self.plan);
+        let number = (pass.seed, self.place.iteration);
+        let Some(iteration) =
+            vcm::Iteration::new(world, config, &plan.photons, &plan.camera, number, observer)
+        else {
+            return false;
+        };
+        self.statistics.count_paths(&iteration.totals(), iteration.ledger(), &mut self.ledger);
+        self.statistics.count_volumes(iteration.maps());
+        let camera = iteration.camera(world, config, &plan.camera);
+        let mut exposed = expose(world, &camera, pass, self.aovs.is_some(), observer);
+        exposed.add(&iteration.brought(pass.samples));
         self.take(exposed)
     }
 

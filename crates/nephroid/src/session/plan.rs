@@ -1,7 +1,7 @@
 //! What a render decides before its first iteration.
 
 use super::RenderSettings;
-use crate::integrator::{CameraPlan, Method, progressive};
+use crate::integrator::{CameraPlan, Method, progressive, vcm};
 use crate::observer::{Observer, Phase, Work};
 use crate::transport::PhotonPlan;
 use crate::world::World;
@@ -31,6 +31,11 @@ impl RenderPlan {
             Method::Ppm(config) => {
                 let _work = Work::begin(observer, Phase::Pilot, 1);
                 let (photons, camera) = progressive::plan(world, config, settings.seed, observer);
+                Self { photons, camera }
+            }
+            Method::Vcm(config) => {
+                let _work = Work::begin(observer, Phase::Pilot, 1);
+                let (photons, camera) = vcm::plan(world, config, settings.seed, observer);
                 Self { photons, camera }
             }
             Method::Path(_) | Method::LightTracer(_) => {
