@@ -95,9 +95,12 @@ impl<'w> Inspector<'w> {
             Method::Vcm(config) => {
                 let RenderPlan { photons, camera } = self.plan;
                 let number = (self.settings.seed, self.iteration);
-                let iteration = vcm::Iteration::new(self.world, &config, &photons, &camera, number, observer);
+                let (density, _) =
+                    vcm::density(self.world, &config, photons.global.paths, self.settings.seed, observer);
+                let iteration =
+                    vcm::Iteration::new(self.world, &config, &photons, &camera, &density, number, observer);
                 let Some(iteration) = iteration else { return false };
-                self.take(&iteration.camera(self.world, &config, &camera), None, taken);
+                self.take(&iteration.camera(self.world, &config, &camera, &density), None, taken);
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);

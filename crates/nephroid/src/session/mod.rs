@@ -66,6 +66,7 @@ pub struct Session<'w> {
     torn: Option<Exposed>,
     maps: Option<Maps>,
     guides: Option<Guides>,
+    density: Option<vcm::Density>,
     ledger: Ledger,
     place: Place,
     statistics: Statistics,
@@ -90,6 +91,7 @@ impl<'w> Session<'w> {
             torn: None,
             maps: None,
             guides: None,
+            density: None,
             ledger: Ledger::default(),
             place: Place::default(),
             statistics: Statistics { plan, ..Statistics::default() },
@@ -239,14 +241,17 @@ impl<'w> Session<'w> {
     fn vcm_step(&mut self, config: &VcmConfig, pass: &CameraPass, observer: &dyn Observer) -> bool {
         let (world, plan) = (self.world, self.plan);
         let number = (pass.seed, self.place.iteration);
-        let Some(iteration) =
-            vcm::Iteration::new(world, config, &plan.photons, &plan.camera, number, observer)
-        else {
-            return false;
+        let density = match self.density.take() {
+            Some(density) => density,
+            None => vcm::density(world, config, plan.photons.global.paths, pass.seed, observer).0,
         };
+        let density = &*self.density.insert(density);
+        let iteration =
+            vcm::Iteration::new(world, config, &plan.photons, &plan.camera, density, number, observer);
+        let Some(iteration) = iteration else { return false };
         self.statistics.count_paths(&iteration.totals(), iteration.ledger(), &mut self.ledger);
         self.statistics.count_volumes(iteration.maps());
-        let camera = iteration.camera(world, config, &plan.camera);
+        let camera = iteration.camera(world, config, &plan.camera, density);
         let mut exposed = expose(world, &camera, pass, self.aovs.is_some(), observer);
         exposed.add(&iteration.brought(pass.samples));
         self.take(exposed)

@@ -9,7 +9,8 @@ pub struct CameraPlan {
     pub gather_rays: Option<u32>,
     /// Photons of an estimate from the global and from the caustic map.
     pub neighbours: [u32; 2],
-    /// The radius within which photons are merged with camera paths in the first iteration, where they are.
+    /// The radius within which photons are merged with camera paths in the first iteration, where they are, behind the first
+    /// surface that is not specular.
     pub merging_radius: f32,
 }
 

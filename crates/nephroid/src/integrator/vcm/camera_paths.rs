@@ -4,6 +4,7 @@ use super::VcmConfig;
 use super::densities::{Kind, Place, Trail};
 use super::lamp::LampEnd;
 use super::light_paths::{LightPaths, LightVertex, place_of};
+use super::reach::AtFirst;
 use super::weights::{Technique, Techniques, Whole};
 use crate::color::Rgb;
 use crate::integrator::photon_mapper::PhotonMapper;
@@ -28,7 +29,7 @@ pub(crate) struct Camera<'a> {
     pub config: &'a VcmConfig,
     pub(super) paths: &'a LightPaths,
     pub(super) techniques: Techniques,
-    pub radius: f32,
+    pub(super) at_first: AtFirst<'a>,
     /// Reads the maps of light in media.
     pub media: PhotonMapper<'a>,
 }
@@ -46,6 +47,10 @@ struct Walk {
     /// Whether nothing since the last of them but specular surfaces, of which there is at least one.
     specular: bool,
     trail: Trail,
+    /// The length of the way up to the first surface that is not specular, as far as it is known.
+    length: f32,
+    /// The radius within which photons are merged there.
+    at_first: f32,
     /// Number of the light path to connect to.
     partner: u64,
 }
@@ -69,7 +74,11 @@ impl Camera<'_> {
 
     /// Comes to a vertex.
     fn arrive(&self, walk: &mut Walk, place: Place, kind: Kind, lens: &Ray) {
+        let far = walk.trail.distance_to(&place) >= self.techniques.reach.apart();
         walk.trail.arrive(place, kind);
+        if let Some(last) = walk.trail.nodes.last_mut() {
+            last.far = far;
+        }
         if let ([first], Place::Surface { position, ng }) = (&mut walk.trail.nodes[..], place) {
             let across = self.world.camera().pixels_per_area_from(lens.origin, position);
             first.arrival = across * ng.dot(walk.ray.direction).abs();
@@ -87,7 +96,13 @@ impl Camera<'_> {
         if let Some(last) = walk.trail.nodes.last_mut() {
             last.counter = lamp.leaving * here;
         }
-        let path = Whole { light: &[lamp.node], counters: [counter, 0.0], camera: &walk.trail.nodes };
+        let path = Whole {
+            light: &[lamp.node],
+            counters: [counter, 0.0],
+            camera: &walk.trail.nodes,
+            far: true,
+            at_first: walk.at_first,
+        };
         self.techniques.weight(&path, Technique::Met)
     }
 
@@ -119,7 +134,13 @@ impl Camera<'_> {
         let [there, here] = walk.trail.at.between(&lamp.place);
         set_counters(&mut walk.trail, lamp.leaving * here, lit.pdf_between(wi, lit.wo));
         let counters = [lit.pdf(wi) * there, 0.0];
-        let path = Whole { light: &[lamp.node], counters, camera: &walk.trail.nodes };
+        let path = Whole {
+            light: &[lamp.node],
+            counters,
+            camera: &walk.trail.nodes,
+            far: true,
+            at_first: walk.at_first,
+        };
         let weight = self.techniques.weight(&path, Technique::Connected);
         scattered * through * (weight / (incident.pdf_solid_angle * probability))
     }
@@ -157,7 +178,14 @@ impl Camera<'_> {
         let [to_light, to_camera] = walk.trail.at.between(&vertex.place);
         set_counters(&mut walk.trail, there.pdf(-wi) * to_camera, lit.pdf_between(wi, lit.wo));
         let counters = [lit.pdf(wi) * to_light, there.pdf_between(-wi, there.wo) * vertex.back];
-        let path = Whole { light: self.paths.nodes_of(vertex), counters, camera: &walk.trail.nodes };
+        let far = distance_sq >= self.techniques.reach.apart() * self.techniques.reach.apart();
+        let path = Whole {
+            light: self.paths.nodes_of(vertex),
+            counters,
+            camera: &walk.trail.nodes,
+            far,
+            at_first: walk.at_first,
+        };
         let weight = self.techniques.weight(&path, Technique::Connected);
         let inside = lit.beyond(world, wi);
         let through = world.light_through(from, inside, wi, &vertex.source(), &mut sample.sampler);
@@ -166,17 +194,23 @@ impl Camera<'_> {
 
     /// Light of the photons around a surface: caustics that the camera sees there, and all other.
     fn merged(&self, hit: &Hit, bsdf: &Bsdf, walk: &mut Walk, out: &mut Components, probe: &mut impl Probe) {
-        if self.techniques.merged_area <= 0.0 || bsdf.is_black() {
+        let reach = &self.techniques.reach;
+        let behind = walk.scattered > 1;
+        let radius = if behind { reach.radius } else { walk.at_first };
+        let area = reach.area(radius);
+        let far = walk.trail.nodes.last().is_some_and(|node| node.far);
+        if area <= 0.0 || bsdf.is_black() || (behind && !far) {
             return;
         }
         let (wo, position) = (-walk.ray.direction, hit.point.position);
         let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
+        let at_first = walk.at_first;
         let Some((last, before)) = walk.trail.nodes.split_last_mut() else { return };
         let [mut caustic, mut global] = [Rgb::BLACK; 2];
-        self.paths.each_within(position, self.radius, |photon, place| {
+        self.paths.each_within(position, radius, |photon, place| {
             let height = (place - position).dot(normal);
             if photon.normal.dot(normal) < MIN_NORMAL_COSINE
-                || height.abs() > MAX_THICKNESS * self.radius
+                || height.abs() > MAX_THICKNESS * radius
                 || !self.fits(walk.depth + photon.depth)
             {
                 return;
@@ -189,11 +223,12 @@ impl Camera<'_> {
                 before.counter = bsdf.pdf(photon.wi, wo) * walk.trail.back;
             }
             let counters = [last.arrival, bsdf.pdf(wo, photon.wi) * photon.back];
-            let path = Whole { light: self.paths.nodes_at(photon), counters, camera: before };
+            let path =
+                Whole { light: self.paths.nodes_at(photon), counters, camera: before, far: true, at_first };
             let light = f * photon.power * self.techniques.weight(&path, Technique::Merged);
             *(if photon.caustic && walk.scattered == 1 { &mut caustic } else { &mut global }) += light;
         });
-        let scale = walk.throughput / self.techniques.merged_area;
+        let scale = walk.throughput / area;
         for (part, light) in [(LightPart::Caustic, caustic), (LightPart::Global, global)] {
             book(out, part, scale * light, probe);
         }
@@ -291,6 +326,8 @@ impl Estimator for Camera<'_> {
             collisions: 0,
             specular: false,
             trail: Trail::new(),
+            length: 0.0,
+            at_first: 0.0,
             partner: partner(sample.key, sample.index),
         };
         walk.trail.begin(Place::Point { position: lens.origin }, 0.0);
@@ -340,6 +377,7 @@ impl Estimator for Camera<'_> {
                 let weight = self.weight_of_lamp(&mut walk, lamp);
                 book(&mut out, walk.part(), walk.throughput * radiance * weight, probe);
             }
+            walk.length += hit.t;
             let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
             if bsdf.is_null() {
                 let direction = walk.ray.direction;
@@ -358,6 +396,9 @@ impl Estimator for Camera<'_> {
                 &lens,
             );
             if !bsdf.is_dirac() {
+                if walk.scattered == 0 {
+                    walk.at_first = self.at_first.radius(world, hit.point.position, walk.length, neighbors);
+                }
                 (walk.scattered, walk.specular) = (walk.scattered + 1, false);
                 let lit =
                     Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walk.inside };

@@ -27,6 +27,8 @@ pub(super) struct Node {
     /// With which a walk from the other end comes here, once it is known where this walk goes on.
     pub counter: f32,
     pub kind: Kind,
+    /// Whether the next vertex towards the camera is so far away that photons may be merged here: see [`super::reach::Reach`].
+    pub far: bool,
 }
 
 /// Where a vertex lies, and how it faces directions.
@@ -52,7 +54,7 @@ impl Place {
         }
     }
 
-    fn position(&self) -> Option<Vec3> {
+    pub fn position(&self) -> Option<Vec3> {
         match self {
             Self::Surface { position, .. } | Self::Medium { position, .. } | Self::Point { position } => {
                 Some(*position)
@@ -108,8 +110,16 @@ impl Trail {
     /// Comes to a vertex.
     pub fn arrive(&mut self, there: Place, kind: Kind) {
         let [forth, back] = self.at.between(&there);
-        self.nodes.push(Node { arrival: self.leaving * forth, counter: 0.0, kind });
+        self.nodes.push(Node { arrival: self.leaving * forth, counter: 0.0, kind, far: false });
         (self.at, self.back) = (there, back);
+    }
+
+    /// The distance from the last vertex to a place.
+    pub fn distance_to(&self, there: &Place) -> f32 {
+        match (self.at.position(), there.position()) {
+            (Some(a), Some(b)) => a.distance(b),
+            _ => f32::INFINITY,
+        }
     }
 
     /// Takes a direction from the last vertex with a density, and the opposite way that of the reverse.

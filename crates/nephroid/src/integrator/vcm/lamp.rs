@@ -43,7 +43,7 @@ impl LampEnd {
         let asked = if asked > 0.0 && asked.is_finite() { asked } else { 1.0 };
         Self {
             place,
-            node: Node { arrival: asked, counter: 0.0, kind: Kind::Lamp { dirac } },
+            node: Node { arrival: asked, counter: 0.0, kind: Kind::Lamp { dirac }, far: true },
             leaving: started / asked,
         }
     }

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::densities::{Kind, Node, Place, Trail};
 use super::lamp::LampEnd;
+use super::reach::AtFirst;
 use super::weights::{Technique, Techniques, Whole};
 use crate::color::Rgb;
 use crate::film::Splatter;
@@ -13,7 +14,7 @@ use crate::material::Bsdf;
 use crate::math::Vec3;
 use crate::medium::Phase;
 use crate::observer::Observer;
-use crate::photon_map::{GridTree, PhotonIndex};
+use crate::photon_map::{GridTree, NearestList, PhotonIndex};
 use crate::sampling::{Key, Sampler, Sequence, Stream};
 use crate::transport::{
     Balance, Bounce, Connection, Event, Ledger, Lit, MapKind, Next, Part, PhotonKind, Scatterer, Splats,
@@ -128,6 +129,7 @@ impl LightPaths {
         world: &World,
         pass: &LightPass,
         techniques: &Techniques,
+        at_first: AtFirst<'_>,
         observer: &dyn Observer,
     ) -> Option<Self> {
         let splatter = Splatter::new(&world.scene().film);
@@ -135,7 +137,7 @@ impl LightPaths {
         ledger.paths = pass.paths;
         let (mut photons, mut vertices, mut nodes, mut starts) =
             (Vec::new(), Vec::new(), Vec::new(), vec![0]);
-        let trace = |range: Range<u64>| trace(world, pass, techniques, &splatter, range);
+        let trace = |range: Range<u64>| trace(world, pass, techniques, at_first, &splatter, range);
         let splats = splat(world, pass.paths, observer, trace, |piece: Piece| {
             let first = nodes.len() as u32;
             let moved = |[start, end]: [u32; 2]| [start + first, end + first];
@@ -167,6 +169,11 @@ impl LightPaths {
             + size_of_val(self.photons.as_slice())
             + size_of_val(self.vertices.as_slice())
             + size_of_val(self.nodes.as_slice())
+    }
+
+    /// Where the photons are.
+    pub fn places(&self) -> Vec<Vec3> {
+        (0..self.photons.len() as u32).map(|place| self.index.position(place)).collect()
     }
 
     /// The vertices of one of the paths that are kept, as a number without bounds chooses it.
@@ -202,6 +209,8 @@ struct Walked<'a> {
     splatter: &'a Splatter,
     start: Option<(usize, Option<crate::shape::SurfacePoint>, Vec3)>,
     trail: Trail,
+    at_first: AtFirst<'a>,
+    found: NearestList,
     /// Whether it is kept for connections.
     kept: bool,
     photons: Vec<(Vec3, LightPhoton)>,
@@ -217,6 +226,10 @@ impl Walked<'_> {
             self.trail.begin(lamp.place, lamp.leaving);
             self.trail.nodes.push(lamp.node);
         }
+        let far = self.trail.distance_to(&place) >= self.techniques.reach.apart();
+        if let Some(last) = self.trail.nodes.last_mut() {
+            last.far = far;
+        }
         self.trail.arrive(place, kind);
         true
     }
@@ -230,7 +243,7 @@ impl Walked<'_> {
         }
         let end = self.trail.nodes.len() as u32;
         let (nodes, back) = ([0, end], self.trail.back);
-        if at_surface && end > 2 && self.techniques.merged_area > 0.0 {
+        if at_surface && end > 2 && self.techniques.reach.paths > 0.0 {
             let Place::Surface { ng, .. } = place else { return false };
             let normal = if lit.wo.dot(ng) > 0.0 { ng } else { -ng };
             let caustic = kind == PhotonKind::Caustic;
@@ -271,7 +284,7 @@ impl Walked<'_> {
 
     /// What the camera sees of light that a surface scatters.
     fn to_lens(
-        &self,
+        &mut self,
         lit: &Lit<'_>,
         power: Rgb,
         kind: PhotonKind,
@@ -291,8 +304,19 @@ impl Walked<'_> {
             _ => return None,
         };
         let back = lit.pdf_between(seen.direction, lit.wo) * self.trail.back;
-        let path =
-            Whole { light: &self.trail.nodes, counters: [seen.pixels_per_area * facing, back], camera: &[] };
+        let at_first = self.at_first.radius(
+            world,
+            from.position(),
+            seen.lens.distance(from.position()),
+            &mut self.found,
+        );
+        let path = Whole {
+            light: &self.trail.nodes,
+            counters: [seen.pixels_per_area * facing, back],
+            camera: &[],
+            far: true,
+            at_first,
+        };
         let weight = self.techniques.weight(&path, Technique::Connected);
         let inside = lit.beyond(world, seen.direction);
         let through = world.light_through(from, inside, seen.direction, &Source::Point(seen.lens), sampler);
@@ -320,6 +344,7 @@ fn trace(
     world: &World,
     pass: &LightPass,
     techniques: &Techniques,
+    at_first: AtFirst<'_>,
     splatter: &Splatter,
     paths: Range<u64>,
 ) -> (Vec<Connection>, Piece) {
@@ -335,6 +360,8 @@ fn trace(
         splatter,
         start: None,
         trail: Trail::new(),
+        at_first,
+        found: NearestList::new(),
         kept: false,
         photons: Vec::new(),
         vertices: Vec::new(),

@@ -10,13 +10,17 @@ mod densities;
 mod lamp;
 mod light_paths;
 mod plan;
+mod reach;
+mod shares;
 mod weights;
 
 pub(crate) use camera_paths::Camera;
 pub use config::VcmConfig;
-pub(crate) use plan::plan;
+pub(crate) use plan::{density, plan};
+pub(crate) use reach::Density;
 
 use self::light_paths::{LightPass, LightPaths};
+use self::reach::{AtFirst, Reach};
 use self::weights::Techniques;
 use super::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, Turn};
 use super::{Brought, MapTotals};
@@ -24,13 +28,11 @@ use crate::observer::Observer;
 use crate::photon_map::{Blur, PhotonMap, Photons};
 use crate::transport::{Ledger, PhotonPlan};
 use crate::world::World;
-use std::f32::consts::PI;
 
 /// What one iteration connects and merges with.
 pub(crate) struct Iteration {
     paths: LightPaths,
     techniques: Techniques,
-    radius: f32,
     /// Of light in media.
     maps: Maps,
     guides: Guides,
@@ -43,6 +45,7 @@ impl Iteration {
         config: &VcmConfig,
         photons: &PhotonPlan,
         camera: &CameraPlan,
+        density: &Density,
         (seed, iteration): (u64, u64),
         observer: &dyn Observer,
     ) -> Option<Self> {
@@ -50,26 +53,39 @@ impl Iteration {
         let radius = camera.merging_radius * blur.factor(2);
         let paths = photons.global.paths;
         let techniques = Techniques {
-            merged_area: if config.merging { paths as f32 * PI * radius * radius } else { 0.0 },
+            reach: Reach { radius, paths: if config.merging { paths as f32 } else { 0.0 } },
             to_lens: paths as f32 / camera.samples_per_pixel as f32,
             connects: config.connections && paths > 0,
             correlation: config.correlation,
         };
         let pass = LightPass { seed, iteration, paths, max_depth: config.mapper.max_depth };
-        let paths = LightPaths::trace(world, &pass, &techniques, observer)?;
+        let paths = LightPaths::trace(
+            world,
+            &pass,
+            &techniques,
+            AtFirst { density, factor: blur.factor(2) },
+            observer,
+        )?;
         let turn = Turn { seed, iteration, gathers: false, blur };
         let volumes = Maps::volumes(world, &config.mapper, photons, &turn, observer)?;
         let none = || PhotonMap::build(Photons::default());
         let maps = Maps::new([none(), none(), none(), none()], volumes, blur, Ledger::default());
-        Some(Self { paths, techniques, radius, maps, guides: Guides::none() })
+        Some(Self { paths, techniques, maps, guides: Guides::none() })
     }
 
     /// What the samples of its camera do.
-    pub fn camera<'a>(&'a self, world: &'a World, config: &'a VcmConfig, plan: &CameraPlan) -> Camera<'a> {
+    pub fn camera<'a>(
+        &'a self,
+        world: &'a World,
+        config: &'a VcmConfig,
+        plan: &CameraPlan,
+        density: &'a Density,
+    ) -> Camera<'a> {
+        let at_first = AtFirst { density, factor: self.maps.blur.factor(2) };
         let plan = CameraPlan { stride: 1, gather_rays: None, ..*plan };
         let media = PhotonMapper::new(world, &config.mapper, &self.maps, &self.guides, &plan);
-        let Self { paths, techniques, radius, .. } = self;
-        Camera { world, config, paths, techniques: *techniques, radius: *radius, media }
+        let Self { paths, techniques, .. } = self;
+        Camera { world, config, paths, techniques: *techniques, at_first, media }
     }
 
     /// What its light paths bring straight to the camera.

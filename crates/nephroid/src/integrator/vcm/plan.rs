@@ -1,18 +1,23 @@
 //! What an iteration does, found before the first.
 
 use super::VcmConfig;
+use super::light_paths::{LightPass, LightPaths};
+use super::reach::{AtFirst, Density, Reach};
+use super::weights::Techniques;
 use crate::integrator::photon_mapper::CameraPlan;
 use crate::observer::Observer;
-use crate::photon_map::PhotonMap;
 use crate::sampling::{Key, Stream};
-use crate::transport::{Extras, MapPlan, PhotonPlan, PhotonTargets, photon_pass};
+use crate::transport::{MapPlan, PhotonPlan, PhotonTargets};
 use crate::world::World;
 
 /// Photons of the first iteration that are merged at a point, where they lie at their mean density.
 const MERGED: u32 = 4;
 
-/// Photons of the trial that tells how densely they lie.
-const TRIAL_PHOTONS: u64 = 20_000;
+/// Light paths of an iteration at least: fewer would blur more than needs be.
+const FEWEST_PATHS: u64 = 20_000;
+
+/// Light paths of the trial that tells how densely their photons lie.
+const TRIAL_PATHS: u64 = 16_384;
 
 /// Plans for so many camera samples of each pixel in an iteration.
 pub(crate) fn plan(
@@ -30,21 +35,37 @@ pub(crate) fn plan(
     }
     let window = world.scene().film.window();
     let pixels = u64::from(window.width) * u64::from(window.height);
-    let paths = config.light_paths.unwrap_or(pixels);
-    photons.global = MapPlan { paths, expected_photons: 0, limited: false };
-    let targets =
-        PhotonTargets { global: TRIAL_PHOTONS, caustic: 0, volume: 0, emit: None, ..config.mapper.targets() };
-    let trial = PhotonPlan::by_pilot(world, &walks, &targets, seed);
-    let extras = Extras::default();
-    let seed = Key::new(seed, 0, Stream::Pilot).with(1).hash();
-    if let Some(pass) = photon_pass(world, &walks, &trial, extras, seed, 0, observer) {
-        let map: PhotonMap = PhotonMap::build(pass.global);
-        let expected = map.len() as f64 / map.emitted().max(1) as f64 * paths as f64;
-        photons.global.expected_photons = expected as u64;
-        if expected > 0.0 {
-            let closer = (map.len() as f64 / expected).sqrt() as f32;
-            camera.merging_radius = map.typical_radius(MERGED) * closer;
-        }
-    }
+    let paths = config.light_paths.unwrap_or((pixels / 4).max(FEWEST_PATHS));
+    camera.samples_per_pixel = (2 * paths / pixels).clamp(1, 16) as u32;
+    photons.global = MapPlan { paths, ..MapPlan::default() };
+    let (density, stored) = density(world, config, paths, seed, observer);
+    photons.global.expected_photons = stored;
+    camera.merging_radius = density.typical();
     (photons, camera)
+}
+
+/// How densely the photons of so many light paths lie, and how many there are, as a trial tells.
+pub(crate) fn density(
+    world: &World,
+    config: &VcmConfig,
+    paths: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> (Density, u64) {
+    let seed = Key::new(seed, 0, Stream::Pilot).with(1).hash();
+    let pass = LightPass { seed, iteration: 0, paths: TRIAL_PATHS, max_depth: config.mapper.max_depth };
+    let everything = Techniques {
+        reach: Reach { radius: 0.0, paths: 1.0 },
+        to_lens: 0.0,
+        connects: false,
+        correlation: false,
+    };
+    let more = paths as f32 / TRIAL_PATHS as f32;
+    let nothing = Density::new(&[], MERGED, more);
+    let at_first = AtFirst { density: &nothing, factor: 1.0 };
+    let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, observer) else {
+        return (nothing, 0);
+    };
+    let stored = (trial.photon_count() as f32 * more) as u64;
+    (Density::new(&trial.places(), MERGED, more), stored)
 }

@@ -10,7 +10,11 @@
 //! where η = N π r² is the number of light paths times the area in which their photons count. The balance heuristic
 //! weighs a path by its own technique's share of the sum.
 
+use std::f32::consts::PI;
+
 use super::densities::{Kind, Node};
+use super::reach::Reach;
+use super::shares::Shares;
 
 /// How a path was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,8 +31,8 @@ pub(super) enum Technique {
 /// How paths are looked for, apart from what is the same for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Techniques {
-    /// η, in m²: see above. 0 without merging.
-    pub merged_area: f32,
+    /// What is merged, and where.
+    pub reach: Reach,
     /// Light paths for each camera sample of a pixel: how often the lens is connected to. 0 without.
     pub to_lens: f32,
     /// Whether vertices of light paths beyond the lamp are connected to those of camera paths.
@@ -44,6 +48,8 @@ pub(super) struct Sums {
     pub all: f64,
     /// Those of a path tracer: paths that meet a lamp, and direct light.
     pub of_paths: f64,
+    /// That which found the path.
+    pub own: f64,
 }
 
 /// A path as its two walks know it.
@@ -54,94 +60,120 @@ pub(super) struct Whole<'a> {
     pub counters: [f32; 2],
     /// From what the camera sees first on.
     pub camera: &'a [Node],
+    /// The radius within which photons are merged at the first vertex that the camera sees and is not specular.
+    pub at_first: f32,
+    /// Whether the last vertex of the former is far from what follows: see [`Node::far`].
+    pub far: bool,
+}
+
+impl Whole<'_> {
+    pub fn len(&self) -> usize {
+        self.light.len() + self.camera.len()
+    }
+
+    /// Vertex i from the lamp.
+    pub fn kind(&self, i: usize) -> Kind {
+        let light = self.light.len();
+        if i < light { self.light[i].kind } else { self.camera[self.len() - 1 - i].kind }
+    }
+
+    /// The densities F and B at vertex i.
+    pub fn densities(&self, i: usize) -> [f64; 2] {
+        let light = self.light.len();
+        if i >= light {
+            let node = &self.camera[self.len() - 1 - i];
+            return [node.counter, node.arrival].map(f64::from);
+        }
+        let counter = match light - 1 - i {
+            back @ (0 | 1) => self.counters[back],
+            _ => self.light[i].counter,
+        };
+        [self.light[i].arrival, counter].map(f64::from)
+    }
+
+    /// The first vertex that the camera sees and is not specular.
+    pub fn first(&self) -> usize {
+        (0..self.len()).rev().find(|i| self.kind(*i) != Kind::Specular).unwrap_or(0)
+    }
+
+    /// Whether vertex i is far from the next towards the camera.
+    fn is_far(&self, i: usize) -> bool {
+        let light = self.light.len();
+        match i + 1 {
+            next if next < light => self.light[i].far,
+            next if next == light => self.far,
+            _ => self.camera[self.len() - 1 - i].far,
+        }
+    }
 }
 
 impl Techniques {
     /// The weight of a path that was found so.
     pub fn weight(&self, path: &Whole<'_>, found: Technique) -> f32 {
-        let own = self.own(path, found);
-        let sums = self.sums(path);
-        if own > 0.0 && sums.all > 0.0 { (own / sums.all) as f32 } else { 0.0 }
+        let Sums { all, own, .. } = self.sums(path, found);
+        if own > 0.0 && all.is_finite() { (own / all) as f32 } else { 0.0 }
     }
 
-    /// The density of the technique that found a path, in the unit of [`Sums`].
-    pub fn own(&self, path: &Whole<'_>, found: Technique) -> f64 {
-        match (found, path.light) {
-            (Technique::Merged, light) => {
-                f64::from(path.counters[0])
-                    * f64::from(self.merged_area)
-                    * self.share_of(path, light.len() - 1)
-            }
-            (Technique::Met, light) => f64::from(path.counters[0]) / f64::from(light[0].arrival),
-            (Technique::Connected, _) if path.camera.is_empty() => f64::from(self.to_lens),
-            (Technique::Connected, _) => 1.0,
+    /// How often connections are tried between the last of s vertices from the lamp and the rest of a path; 0 where they
+    /// cannot be.
+    fn connections(&self, path: &Whole<'_>, s: usize) -> f64 {
+        let count = path.len();
+        if s == 0 {
+            return f64::from(u8::from(path.kind(0) == Kind::Lamp { dirac: false }));
+        }
+        let specular = |i: usize| path.kind(i) == Kind::Specular;
+        if specular(s - 1) || (s < count && specular(s)) {
+            return 0.0;
+        }
+        match s {
+            _ if s == count => f64::from(u8::from(count > 1)) * f64::from(self.to_lens),
+            1 => 1.0,
+            _ => f64::from(u8::from(self.connects)),
         }
     }
 
-    fn share_of(&self, path: &Whole<'_>, vertex: usize) -> f64 {
-        if self.correlation { shares(path)(vertex) } else { 1.0 }
-    }
-
-    /// All techniques' densities.
-    pub fn sums(&self, path: &Whole<'_>) -> Sums {
-        let (light, camera) = (path.light, path.camera);
-        let count = light.len() + camera.len();
-        let node = |i: usize| if i < light.len() { &light[i] } else { &camera[count - 1 - i] };
-        // Whether walks of so many vertices from the lamp can be connected to the rest.
-        let connected = |s: usize| -> f64 {
-            let last = node(s.saturating_sub(1)).kind;
-            if s == 0 {
-                return f64::from(u8::from(last == Kind::Lamp { dirac: false }));
-            }
-            if last == Kind::Specular || (s < count && node(s).kind == Kind::Specular) {
-                return 0.0;
-            }
-            match s {
-                1 if count > 1 => 1.0,
-                _ if s == count => f64::from(self.to_lens) * f64::from(u8::from(count > 1)),
-                _ => f64::from(u8::from(self.connects)),
+    /// The densities of all techniques.
+    pub fn sums(&self, path: &Whole<'_>, found: Technique) -> Sums {
+        let (count, light) = (path.len(), path.light.len());
+        let first = path.first();
+        let shares =
+            self.correlation.then(|| Shares::new(path, first, PI * self.reach.radius * self.reach.radius));
+        let merged = |m: usize, density: f64| -> f64 {
+            let area = self.reach.area_at(path.kind(m), m, first, path.at_first, path.is_far(m));
+            if area == 0.0 {
+                0.0
+            } else {
+                density * area * shares.as_ref().map_or(1.0, |shares| shares.at(m))
             }
         };
-        let merges = |m: usize| m >= 2 && self.merged_area > 0.0 && node(m).kind == Kind::Surface;
-        let area = f64::from(self.merged_area);
-        let share = shares(path);
-        let share = |m: usize| if self.correlation { share(m) } else { 1.0 };
-        let mut sums = Sums { all: connected(light.len()), of_paths: 0.0 };
-        if light.len() == 1 {
-            sums.of_paths += sums.all;
+        let here = self.connections(path, light);
+        let mut sums = Sums { all: here, of_paths: 0.0, own: here };
+        if light == 1 {
+            sums.of_paths = here;
         }
         let mut relative = 1.0;
-        for i in (0..light.len()).rev() {
-            let counter = match light.len() - 1 - i {
-                back @ (0 | 1) => path.counters[back],
-                _ => light[i].counter,
-            };
-            if merges(i) {
-                sums.all += relative * f64::from(counter) * area * share(i);
-            }
-            relative *= f64::from(counter) / f64::from(light[i].arrival);
-            let connected = relative * connected(i);
-            sums.all += connected;
+        for i in (0..light).rev() {
+            let [forth, back] = path.densities(i);
+            let merging = merged(i, relative * back);
+            relative *= back / forth;
+            let connected = relative * self.connections(path, i);
+            sums.all += merging + connected;
             if i <= 1 {
                 sums.of_paths += connected;
             }
+            match found {
+                Technique::Merged if i + 1 == light => sums.own = merging,
+                Technique::Met if i == 0 => sums.own = connected,
+                _ => {}
+            }
         }
         let mut relative = 1.0;
-        for (back, node) in camera.iter().enumerate().rev() {
-            let i = count - 1 - back;
-            if merges(i) {
-                sums.all += relative * f64::from(node.counter) * area * share(i);
-            }
-            relative *= f64::from(node.counter) / f64::from(node.arrival);
-            sums.all += relative * connected(i + 1);
+        for i in light..count {
+            let [forth, back] = path.densities(i);
+            sums.all += merged(i, relative * forth);
+            relative *= forth / back;
+            sums.all += relative * self.connections(path, i + 1);
         }
         sums
     }
-}
-
-/// What merging at a vertex is worth: photons there share the camera's way to it, so many of them are no more than one
-/// where that way is the less likely one.
-fn shares<'a>(path: &'a Whole<'a>) -> impl Fn(usize) -> f64 + 'a {
-    let _ = path;
-    |_| 1.0
 }
