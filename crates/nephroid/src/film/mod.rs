@@ -11,6 +11,8 @@ mod light;
 mod merge_error;
 mod pixel;
 mod quality;
+#[cfg(test)]
+mod quality_tests;
 mod splatter;
 mod sums;
 #[cfg(test)]

@@ -99,7 +99,7 @@ impl Quality {
 ///
 /// If that of the mean of n falls as n^(−1−δ), of which the spread of the samples shows n^(−1), then halves of m compare as
 /// ρ = m^(−δ) (2 − 2^(−δ)) ≈ (m/2)^(−δ), and n^(−δ) is left. A ρ that is uncertain is drawn to 1.
-fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) -> (f64, f64) {
+pub(super) fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) -> (f64, f64) {
     match convergence.ln_ratio() {
         Some((compared, ln_ratio)) if compared >= 8 => {
             let lever = libm::log(estimates as f64) / libm::log(compared as f64 / 4.0);
