@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Header and blocks each have their length and their checksum before them, 4 and 4 bytes. A block has a byte for
-//! the width of each of its columns, and then the columns: of the picture those of red, green, blue, squares, weights
-//! and estimates; of further values the three weights and all numbers, as [`AovFilm::sums`] has them. All numbers are
-//! little-endian; a pixel of the picture takes 60 bytes at most.
+//! the width of each of its columns, and then the columns: of the picture those of red, green, blue, squares, weights,
+//! estimates, blur, its squares and marks; of further values the three weights and all numbers, as [`AovFilm::sums`] has them. All numbers are
+//! little-endian; a pixel of the picture takes 96 bytes at most.
 //!
 //! [`AovFilm::sums`]: nephroid::film::AovFilm::sums
 
@@ -45,8 +45,9 @@ pub use write::{encode_film, write_film};
 /// What a film file begins with.
 const MAGIC: &[u8; 8] = b"NEPHFILM";
 
-/// The version that is written, and the only one that can be read: squares of version 1 had fewer bits behind the point.
-const VERSION: u32 = 2;
+/// The version that is written, and the only one that can be read: squares of version 1 had fewer bits behind the point,
+/// and version 2 knew nothing of how films converge.
+const VERSION: u32 = 3;
 
 /// Pixels of a block: they and their sums fit into a processor's second cache.
 const BLOCK: usize = 1024;

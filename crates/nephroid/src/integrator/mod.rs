@@ -1,5 +1,6 @@
 //! Integrators: each a configuration and one iteration.
 
+mod blur_probe;
 mod light_tracer;
 mod path;
 mod photon_mapper;
@@ -7,6 +8,7 @@ mod probe;
 pub(crate) mod progressive;
 pub(crate) mod vcm;
 
+pub(crate) use blur_probe::BlurProbe;
 pub use light_tracer::LightTracerConfig;
 pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
@@ -19,7 +21,7 @@ pub use progressive::PpmConfig;
 pub use vcm::VcmConfig;
 
 use crate::color::Rgb;
-use crate::film::Aov;
+use crate::film::{Aov, Pixels};
 
 /// The integrators and their configurations.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +64,17 @@ impl Method {
             Self::Vcm(config) => Some(&config.mapper),
             Self::Path(_) | Self::LightTracer(_) => None,
         }
+    }
+
+    /// Whether the variance of its films is that of all their noise, so that the error of a picture can be
+    /// [told](crate::film::Quality). The photon mapper's samples of an iteration share photons, whose noise it does not show.
+    pub fn tells_error(&self) -> bool {
+        !matches!(self, Self::PhotonMapper(_))
+    }
+
+    /// How the errors of its pixels hang together.
+    pub fn pixels(&self) -> Pixels {
+        if matches!(self, Self::Path(_)) { Pixels::Apart } else { Pixels::Together }
     }
 }
 

@@ -3,6 +3,7 @@
 mod expose;
 mod place;
 mod plan;
+mod quality;
 mod statistics;
 
 use expose::{Exposed, expose};
@@ -11,6 +12,7 @@ pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
 
 use crate::film::{Aov, AovFilm, Film, MergeError};
+pub use crate::film::{Convergence, Quality};
 use crate::integrator::{
     CameraPlan, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
     VcmConfig, vcm,
@@ -61,6 +63,7 @@ pub struct Session<'w> {
     settings: RenderSettings,
     plan: RenderPlan,
     film: Film,
+    convergence: Convergence,
     aovs: Option<AovFilm>,
     /// A step that was stopped, as far as it got.
     torn: Option<Exposed>,
@@ -87,6 +90,7 @@ impl<'w> Session<'w> {
             settings,
             plan,
             film: Film::with_unit(window.width, window.height, world.radiance_unit()),
+            convergence: Convergence::default(),
             aovs: None,
             torn: None,
             maps: None,
@@ -149,13 +153,13 @@ impl<'w> Session<'w> {
             Method::Vcm(config) => self.vcm_step(&config, &pass, observer),
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
-                let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                let exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
                 self.take(exposed)
             }
             Method::LightTracer(config) => {
                 let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
-                let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                let mut exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
                 exposed.add(&light.brought());
                 self.take(exposed)
             }
@@ -231,8 +235,9 @@ impl<'w> Session<'w> {
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
         let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
-        let mut exposed = expose(world, &mapper, pass, self.aovs.is_some(), observer);
-        if matches!(self.settings.method, Method::Ppm(_)) {
+        let progressive = self.settings.method.is_progressive();
+        let mut exposed = expose(world, &mapper, pass, (self.aovs.is_some(), progressive), observer);
+        if progressive {
             exposed.count_as_one_estimate();
         }
         self.take(exposed)
@@ -252,7 +257,7 @@ impl<'w> Session<'w> {
         self.statistics.count_paths(&iteration.totals(), iteration.ledger(), &mut self.ledger);
         self.statistics.count_volumes(iteration.maps());
         let camera = iteration.camera(world, config, &plan.camera, density);
-        let mut exposed = expose(world, &camera, pass, self.aovs.is_some(), observer);
+        let mut exposed = expose(world, &camera, pass, (self.aovs.is_some(), true), observer);
         exposed.add(&iteration.brought(pass.samples));
         self.take(exposed)
     }
@@ -263,6 +268,7 @@ impl<'w> Session<'w> {
         if complete {
             self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
+            exposed.compare(&mut self.film, &mut self.convergence, self.settings.method.pixels());
         } else {
             self.torn = Some(exposed);
         }

@@ -206,7 +206,7 @@ impl Camera<'_> {
         let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
         let at_first = walk.at_first;
         let Some((last, before)) = walk.trail.nodes.split_last_mut() else { return };
-        let [mut caustic, mut global] = [Rgb::BLACK; 2];
+        let [mut caustic, mut global, mut of_half] = [Rgb::BLACK; 3];
         self.paths.each_within(position, radius, |photon, place| {
             let height = (place - position).dot(normal);
             if photon.normal.dot(normal) < MIN_NORMAL_COSINE
@@ -226,9 +226,13 @@ impl Camera<'_> {
             let path =
                 Whole { light: self.paths.nodes_at(photon), counters, camera: before, far: true, at_first };
             let light = f * photon.power * self.techniques.weight(&path, Technique::Merged);
+            if (place - position).length_squared() <= 0.5 * radius * radius {
+                of_half += 2.0 * light;
+            }
             *(if photon.caustic && walk.scattered == 1 { &mut caustic } else { &mut global }) += light;
         });
         let scale = walk.throughput / area;
+        probe.blur(scale * (caustic + global - of_half));
         for (part, light) in [(LightPart::Caustic, caustic), (LightPart::Global, global)] {
             book(out, part, scale * light, probe);
         }
