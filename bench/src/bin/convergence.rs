@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig};
+use nephroid::integrator::{AutoConfig, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig};
 use nephroid::observer::Silent;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
@@ -33,6 +33,10 @@ fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
         "ppm" => {
             let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
             Method::Ppm(PpmConfig { mapper, ..Default::default() })
+        }
+        "auto" => {
+            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
+            Method::Auto(AutoConfig { ppm: PpmConfig { mapper, ..Default::default() } })
         }
         "vcm" => {
             let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
@@ -128,6 +132,9 @@ fn converge(
     let (mut session, mut cpu) = (None, Duration::ZERO);
     cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
     let mut session = session.ok_or("no session")?;
+    if let Some(choice) = &session.plan().choice {
+        eprintln!("after {:.2} s: {}", cpu.as_secs_f64(), choice.reason());
+    }
     let mut shown = None;
     for &mark in marks {
         while cpu.as_secs_f64() < mark {

@@ -1,6 +1,8 @@
 //! Integrators: each a configuration and one iteration.
 
+pub(crate) mod auto;
 mod blur_probe;
+mod effort;
 mod light_tracer;
 mod path;
 mod photon_mapper;
@@ -8,14 +10,16 @@ mod probe;
 pub(crate) mod progressive;
 pub(crate) mod vcm;
 
+pub use auto::{AutoConfig, Choice, Pick};
 pub(crate) use blur_probe::BlurProbe;
+pub(crate) use effort::Effort;
 pub use light_tracer::LightTracerConfig;
 pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
 pub use photon_mapper::{CameraPlan, DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use photon_mapper::{Guides, Maps, PhotonMapper, Turn};
-pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Passed, Probe};
+pub(crate) use probe::{AovProbe, Estimator, Found, LookUp, Met, Passed, Probe};
 pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 pub use progressive::PpmConfig;
 pub use vcm::VcmConfig;
@@ -32,6 +36,8 @@ pub enum Method {
     Ppm(PpmConfig),
     /// Vertex connection and merging.
     Vcm(VcmConfig),
+    /// Whatever trials find best.
+    Auto(AutoConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
     /// Unbiased light tracing to the camera, the reference for caustics.
@@ -45,6 +51,7 @@ impl Method {
             Self::PhotonMapper(_) => "photonmapper",
             Self::Ppm(_) => "ppm",
             Self::Vcm(_) => "vcm",
+            Self::Auto(_) => "auto",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
             Self::LightTracer(_) => "ptracer",
@@ -53,7 +60,7 @@ impl Method {
 
     /// Whether its iterations are planned, short, and one estimate each.
     pub fn is_progressive(&self) -> bool {
-        matches!(self, Self::Ppm(_) | Self::Vcm(_))
+        matches!(self, Self::Ppm(_) | Self::Vcm(_) | Self::Auto(_))
     }
 
     /// How photons are traced and read, if it is a method that does.
@@ -62,6 +69,7 @@ impl Method {
             Self::PhotonMapper(config) => Some(config),
             Self::Ppm(config) => Some(&config.mapper),
             Self::Vcm(config) => Some(&config.mapper),
+            Self::Auto(config) => Some(&config.ppm.mapper),
             Self::Path(_) | Self::LightTracer(_) => None,
         }
     }

@@ -62,6 +62,8 @@ pub struct Session<'w> {
     world: &'w World,
     settings: RenderSettings,
     plan: RenderPlan,
+    /// What renders, which settings may leave open.
+    method: Method,
     film: Film,
     convergence: Convergence,
     aovs: Option<AovFilm>,
@@ -87,6 +89,7 @@ impl<'w> Session<'w> {
         let window = world.scene().film.window();
         Self {
             world,
+            method: plan.method(world, &settings.method),
             settings,
             plan,
             film: Film::with_unit(window.width, window.height, world.radiance_unit()),
@@ -145,12 +148,14 @@ impl<'w> Session<'w> {
         if self.place.samples >= whole {
             (self.place, self.maps) = (Place { iteration: self.place.iteration + 1, samples: 0 }, None);
         }
-        let samples = samples_of_step(&self.settings.method, whole - self.place.samples);
+        let samples = samples_of_step(&self.method, whole - self.place.samples);
         let pass = camera_pass_of(&self.settings, &self.plan.camera, self.place, samples);
-        let done = match self.settings.method.clone() {
+        let done = match self.method.clone() {
             Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
             Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
             Method::Vcm(config) => self.vcm_step(&config, &pass, observer),
+            // It was settled when the render was planned.
+            Method::Auto(_) => return false,
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
                 let exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
@@ -212,6 +217,11 @@ impl<'w> Session<'w> {
         &self.settings
     }
 
+    /// The integrator that renders: that of the settings, or what they leave to be chosen.
+    pub fn method(&self) -> &Method {
+        &self.method
+    }
+
     /// What it does in each iteration.
     pub fn plan(&self) -> &RenderPlan {
         &self.plan
@@ -225,17 +235,17 @@ impl<'w> Session<'w> {
     ) -> bool {
         let (world, plan) = (self.world, self.plan);
         if self.maps.is_none() {
-            let turn = Turn::new(&self.settings.method, &plan.camera, pass.seed, self.place.iteration);
+            let turn = Turn::new(&self.method, &plan.camera, pass.seed, self.place.iteration);
             let Some(maps) = Maps::build(world, config, &plan.photons, &turn, observer) else { return false };
             self.statistics.count(&maps, &mut self.ledger);
             let given = self.guides.take();
-            let method = &self.settings.method;
+            let method = &self.method;
             self.guides = Guides::of_turn(given, world, method, &maps, &turn, observer);
             self.maps = Some(maps);
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
         let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
-        let progressive = self.settings.method.is_progressive();
+        let progressive = self.method.is_progressive();
         let mut exposed = expose(world, &mapper, pass, (self.aovs.is_some(), progressive), observer);
         if progressive {
             exposed.count_as_one_estimate();
@@ -245,7 +255,7 @@ impl<'w> Session<'w> {
 
     fn vcm_step(&mut self, config: &VcmConfig, pass: &CameraPass, observer: &dyn Observer) -> bool {
         let (world, plan) = (self.world, self.plan);
-        let number = (pass.seed, self.place.iteration);
+        let number = vcm::IterationKey::new(pass.seed, self.place.iteration);
         let density = match self.density.take() {
             Some(density) => density,
             None => vcm::density(world, config, plan.photons.global.paths, pass.seed, observer).0,
@@ -268,7 +278,7 @@ impl<'w> Session<'w> {
         if complete {
             self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
-            exposed.compare(&mut self.film, &mut self.convergence, self.settings.method.pixels());
+            exposed.compare(&mut self.film, &mut self.convergence, self.method.pixels());
         } else {
             self.torn = Some(exposed);
         }

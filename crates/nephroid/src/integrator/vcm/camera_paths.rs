@@ -5,13 +5,13 @@ use super::densities::{Kind, Place, Trail};
 use super::lamp::LampEnd;
 use super::light_paths::{LightPaths, LightVertex, place_of};
 use super::reach::AtFirst;
-use super::weights::{Technique, Techniques, Whole};
+use super::weights::{Technique, Techniques, Weighed, Whole};
 use crate::color::Rgb;
 use crate::integrator::photon_mapper::PhotonMapper;
-use crate::integrator::{Components, Estimator, LightPart, Met, Probe};
+use crate::integrator::{Components, Estimator, Found, LightPart, Met, Probe};
 use crate::light::Source;
 use crate::material::{Bsdf, Transport, segments_by};
-use crate::math::Ray;
+use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Passage, PhaseSample};
 use crate::photon_map::NearestList;
 use crate::sampling::Key;
@@ -86,9 +86,9 @@ impl Camera<'_> {
     }
 
     /// The weight of a lamp that the path meets.
-    fn weight_of_lamp(&self, walk: &mut Walk, lamp: impl FnOnce(crate::math::Vec3) -> LampEnd) -> f32 {
+    fn weight_of_lamp(&self, walk: &mut Walk, lamp: impl FnOnce(Vec3) -> LampEnd) -> Weighed {
         let (Place::Surface { position, .. } | Place::Medium { position, .. }) = walk.trail.at else {
-            return 1.0;
+            return Weighed::ALONE;
         };
         let lamp = lamp(position);
         let [there, here] = walk.trail.at.between(&lamp.place);
@@ -103,11 +103,32 @@ impl Camera<'_> {
             far: true,
             at_first: walk.at_first,
         };
-        self.techniques.weight(&path, Technique::Met)
+        self.techniques.weigh(&path, Technique::Met)
+    }
+
+    /// Light of a lamp that the path meets.
+    fn meet(
+        &self,
+        walk: &mut Walk,
+        radiance: Rgb,
+        lamp: impl FnOnce(Vec3) -> LampEnd,
+        out: &mut Components,
+        probe: &mut impl Probe,
+    ) {
+        let Weighed { weight, over_paths } = self.weight_of_lamp(walk, lamp);
+        let light = walk.throughput * radiance * weight;
+        probe.technique(Found::Met, light, over_paths);
+        book(out, walk.part(), light, probe);
     }
 
     /// Light of lamps that are asked for it at a vertex.
-    fn direct(&self, lit: &Lit<'_>, walk: &mut Walk, sample: &mut PixelSample) -> Rgb {
+    fn direct(
+        &self,
+        lit: &Lit<'_>,
+        walk: &mut Walk,
+        sample: &mut PixelSample,
+        probe: &mut impl Probe,
+    ) -> Rgb {
         let (world, sampler, from) = (self.world, &mut sample.sampler, lit.vantage());
         let Some(table) = world.lights_for_direct() else { return Rgb::BLACK };
         let (light, probability, _) = table.sample(sampler.next_1d());
@@ -141,19 +162,27 @@ impl Camera<'_> {
             far: true,
             at_first: walk.at_first,
         };
-        let weight = self.techniques.weight(&path, Technique::Connected);
-        scattered * through * (weight / (incident.pdf_solid_angle * probability))
+        let Weighed { weight, over_paths } = self.techniques.weigh(&path, Technique::Connected);
+        let light = scattered * through * (weight / (incident.pdf_solid_angle * probability));
+        probe.technique(Found::Asked, walk.throughput * light, over_paths);
+        light
     }
 
     /// Light of the vertices of a light path.
-    fn connected(&self, lit: &Lit<'_>, walk: &mut Walk, sample: &mut PixelSample) -> Rgb {
+    fn connected(
+        &self,
+        lit: &Lit<'_>,
+        walk: &mut Walk,
+        sample: &mut PixelSample,
+        probe: &mut impl Probe,
+    ) -> Rgb {
         if !self.techniques.connects {
             return Rgb::BLACK;
         }
         let mut sum = Rgb::BLACK;
         for vertex in self.paths.chosen(walk.partner) {
             if self.fits(walk.depth + 1 + vertex.depth) {
-                sum += self.connection(lit, vertex, walk, sample);
+                sum += self.connection(lit, vertex, walk, sample, probe);
             }
         }
         sum
@@ -165,6 +194,7 @@ impl Camera<'_> {
         vertex: &LightVertex,
         walk: &mut Walk,
         sample: &mut PixelSample,
+        probe: &mut impl Probe,
     ) -> Rgb {
         let (world, from) = (self.world, lit.vantage());
         let way = vertex.position() - from.position();
@@ -186,10 +216,12 @@ impl Camera<'_> {
             far,
             at_first: walk.at_first,
         };
-        let weight = self.techniques.weight(&path, Technique::Connected);
+        let Weighed { weight, over_paths } = self.techniques.weigh(&path, Technique::Connected);
         let inside = lit.beyond(world, wi);
         let through = world.light_through(from, inside, wi, &vertex.source(), &mut sample.sampler);
-        scattered * through * weight
+        let light = scattered * through * weight;
+        probe.technique(Found::Connected, walk.throughput * light, over_paths);
+        light
     }
 
     /// Light of the photons around a surface: caustics that the camera sees there, and all other.
@@ -204,7 +236,7 @@ impl Camera<'_> {
         }
         let (wo, position) = (-walk.ray.direction, hit.point.position);
         let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
-        let at_first = walk.at_first;
+        let (at_first, scale) = (walk.at_first, walk.throughput / area);
         let Some((last, before)) = walk.trail.nodes.split_last_mut() else { return };
         let [mut caustic, mut global, mut of_half] = [Rgb::BLACK; 3];
         self.paths.each_within(position, radius, |photon, place| {
@@ -225,13 +257,14 @@ impl Camera<'_> {
             let counters = [last.arrival, bsdf.pdf(wo, photon.wi) * photon.back];
             let path =
                 Whole { light: self.paths.nodes_at(photon), counters, camera: before, far: true, at_first };
-            let light = f * photon.power * self.techniques.weight(&path, Technique::Merged);
+            let Weighed { weight, over_paths } = self.techniques.weigh(&path, Technique::Merged);
+            let light = f * photon.power * weight;
+            probe.technique(Found::Merged, scale * light, over_paths);
             if (place - position).length_squared() <= 0.5 * radius * radius {
                 of_half += 2.0 * light;
             }
             *(if photon.caustic && walk.scattered == 1 { &mut caustic } else { &mut global }) += light;
         });
-        let scale = walk.throughput / area;
         probe.blur(scale * (caustic + global - of_half));
         for (part, light) in [(LightPart::Caustic, caustic), (LightPart::Global, global)] {
             book(out, part, scale * light, probe);
@@ -268,7 +301,8 @@ impl Camera<'_> {
                 let (place, _) = place_of(self.world, &lit);
                 walk.trail.arrive(place, Kind::Medium);
                 if self.fits(walk.depth + 1) {
-                    let light = self.direct(&lit, walk, sample) + self.connected(&lit, walk, sample);
+                    let light =
+                        self.direct(&lit, walk, sample, probe) + self.connected(&lit, walk, sample, probe);
                     book(out, LightPart::Global, walk.throughput * light, probe);
                 }
                 let (u, u_survive) = (sample.sampler.next_2d(), sample.sampler.next_1d());
@@ -370,16 +404,14 @@ impl Estimator for Camera<'_> {
                 for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
                     let radiance = emitter.sky_radiance(&world.scene().textures, direction);
                     let lamp = |_| LampEnd::in_sky(world, light, direction, radiance);
-                    let weight = self.weight_of_lamp(&mut walk, lamp);
-                    book(&mut out, walk.part(), walk.throughput * radiance * weight, probe);
+                    self.meet(&mut walk, radiance, lamp, &mut out, probe);
                 }
                 break;
             };
             let wo = -walk.ray.direction;
             if let Some((light, radiance)) = world.emitted(&hit, wo) {
                 let lamp = |from| LampEnd::on_surface(world, light, &hit.point, radiance, from);
-                let weight = self.weight_of_lamp(&mut walk, lamp);
-                book(&mut out, walk.part(), walk.throughput * radiance * weight, probe);
+                self.meet(&mut walk, radiance, lamp, &mut out, probe);
             }
             walk.length += hit.t;
             let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
@@ -407,9 +439,9 @@ impl Estimator for Camera<'_> {
                 let lit =
                     Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walk.inside };
                 if self.fits(walk.depth + 1) {
-                    let direct = throughput * self.direct(&lit, &mut walk, sample);
+                    let direct = throughput * self.direct(&lit, &mut walk, sample, probe);
                     book(&mut out, walk.part(), direct, probe);
-                    let connected = throughput * self.connected(&lit, &mut walk, sample);
+                    let connected = throughput * self.connected(&lit, &mut walk, sample, probe);
                     book(&mut out, LightPart::Global, connected, probe);
                     self.merged(&hit, &bsdf, &mut walk, &mut out, probe);
                 }

@@ -6,12 +6,12 @@ use std::ops::Range;
 use super::densities::{Kind, Node, Place, Trail};
 use super::lamp::LampEnd;
 use super::reach::AtFirst;
-use super::weights::{Technique, Techniques, Whole};
+use super::weights::{Technique, Techniques, Weighed, Whole};
 use crate::color::Rgb;
 use crate::film::Splatter;
 use crate::light::Source;
 use crate::material::Bsdf;
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::medium::Phase;
 use crate::observer::Observer;
 use crate::photon_map::{GridTree, NearestList, PhotonIndex};
@@ -33,6 +33,19 @@ pub(super) struct LightPass {
     pub paths: u64,
     /// Segments of a whole path.
     pub max_depth: Option<u32>,
+    /// Whether what they bring to the camera is taken down one by one.
+    pub watched: bool,
+}
+
+/// What one vertex brings to the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Splat {
+    /// In pixels of the whole picture.
+    pub film_position: Vec2,
+    /// Of its light, to be divided by the number of paths.
+    pub luminance: f32,
+    /// See [`Weighed::over_paths`].
+    pub over_paths: f32,
 }
 
 /// A vertex of a light path, to be connected to.
@@ -105,6 +118,7 @@ pub(super) struct LightPhoton {
 pub(super) struct LightPaths {
     pub emitted: u64,
     pub splats: Splats,
+    pub watched: Vec<Splat>,
     pub ledger: Ledger,
     index: GridTree,
     photons: Vec<LightPhoton>,
@@ -121,6 +135,7 @@ struct Piece {
     counts: Vec<u32>,
     nodes: Vec<Node>,
     books: Vec<Balance>,
+    watched: Vec<Splat>,
 }
 
 impl LightPaths {
@@ -133,6 +148,7 @@ impl LightPaths {
         observer: &dyn Observer,
     ) -> Option<Self> {
         let splatter = Splatter::new(&world.scene().film);
+        let mut watched = Vec::new();
         let mut ledger = Ledger::new(world.light_count());
         ledger.paths = pass.paths;
         let (mut photons, mut vertices, mut nodes, mut starts) =
@@ -152,10 +168,11 @@ impl LightPaths {
                 end += count;
                 end
             }));
+            watched.extend(piece.watched);
             ledger.append(&Ledger { lights: piece.books, paths: 0 });
         })?;
         let (index, photons) = GridTree::build_with(photons.len(), |i| photons[i]);
-        Some(Self { emitted: pass.paths, splats, ledger, index, photons, vertices, starts, nodes })
+        Some(Self { emitted: pass.paths, splats, watched, ledger, index, photons, vertices, starts, nodes })
     }
 
     /// How many photons are there to be merged with.
@@ -211,6 +228,8 @@ struct Walked<'a> {
     trail: Trail,
     at_first: AtFirst<'a>,
     found: NearestList,
+    /// What the camera sees of it, taken down if asked for.
+    watched: Option<Vec<Splat>>,
     /// Whether it is kept for connections.
     kept: bool,
     photons: Vec<(Vec3, LightPhoton)>,
@@ -317,12 +336,22 @@ impl Walked<'_> {
             far: true,
             at_first,
         };
-        let weight = self.techniques.weight(&path, Technique::Connected);
+        let Weighed { weight, over_paths } = self.techniques.weigh(&path, Technique::Connected);
         let inside = lit.beyond(world, seen.direction);
         let through = world.light_through(from, inside, seen.direction, &Source::Point(seen.lens), sampler);
         let light = sent * through * weight;
         let part = Part::Surface(kind);
-        (!light.is_black()).then_some(Connection { film_position: seen.film_position, light, part })
+        if light.is_black() {
+            return None;
+        }
+        if let Some(watched) = &mut self.watched {
+            watched.push(Splat {
+                film_position: seen.film_position,
+                luminance: light.luminance(),
+                over_paths,
+            });
+        }
+        Some(Connection { film_position: seen.film_position, light, part })
     }
 }
 
@@ -362,6 +391,7 @@ fn trace(
         trail: Trail::new(),
         at_first,
         found: NearestList::new(),
+        watched: pass.watched.then(Vec::new),
         kept: false,
         photons: Vec::new(),
         vertices: Vec::new(),
@@ -408,6 +438,7 @@ fn trace(
             counts.push(kept.len() as u32);
         }
     }
-    let Walked { photons, vertices, .. } = walked;
-    (connections, Piece { photons, vertices, counts, nodes, books })
+    let Walked { photons, vertices, watched, .. } = walked;
+    let watched = watched.unwrap_or_default();
+    (connections, Piece { photons, vertices, counts, nodes, books, watched })
 }

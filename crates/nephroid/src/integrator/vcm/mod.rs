@@ -7,19 +7,23 @@
 mod camera_paths;
 mod config;
 mod densities;
+mod grid;
 mod lamp;
 mod light_paths;
 mod plan;
 mod reach;
 mod shares;
+mod trial;
 mod weights;
 
 pub(crate) use camera_paths::Camera;
 pub use config::VcmConfig;
+pub(crate) use grid::Grid;
 pub(crate) use plan::{density, plan};
 pub(crate) use reach::Density;
+pub(crate) use trial::trial;
 
-use self::light_paths::{LightPass, LightPaths};
+use self::light_paths::{LightPass, LightPaths, Splat};
 use self::reach::{AtFirst, Reach};
 use self::weights::Techniques;
 use super::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, Turn};
@@ -28,6 +32,24 @@ use crate::observer::Observer;
 use crate::photon_map::{Blur, PhotonMap, Photons};
 use crate::transport::{Ledger, PhotonPlan};
 use crate::world::World;
+
+/// Which iteration it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct IterationKey {
+    pub seed: u64,
+    pub iteration: u64,
+    /// As narrow as this iteration's are its estimates.
+    pub narrowing: u64,
+    /// Whether what light paths bring is taken down one by one.
+    pub watched: bool,
+}
+
+impl IterationKey {
+    /// That of an iteration of a render.
+    pub fn new(seed: u64, iteration: u64) -> Self {
+        Self { seed, iteration, narrowing: iteration, watched: false }
+    }
+}
 
 /// What one iteration connects and merges with.
 pub(crate) struct Iteration {
@@ -46,10 +68,10 @@ impl Iteration {
         photons: &PhotonPlan,
         camera: &CameraPlan,
         density: &Density,
-        (seed, iteration): (u64, u64),
+        IterationKey { seed, iteration, narrowing, watched }: IterationKey,
         observer: &dyn Observer,
     ) -> Option<Self> {
-        let blur = Blur::of_iteration(iteration);
+        let blur = Blur::of_iteration(narrowing);
         let radius = camera.merging_radius * blur.factor(2);
         let paths = photons.global.paths;
         let techniques = Techniques {
@@ -58,7 +80,7 @@ impl Iteration {
             connects: config.connections && paths > 0,
             correlation: config.correlation,
         };
-        let pass = LightPass { seed, iteration, paths, max_depth: config.mapper.max_depth };
+        let pass = LightPass { seed, iteration, paths, max_depth: config.mapper.max_depth, watched };
         let paths = LightPaths::trace(
             world,
             &pass,
@@ -86,6 +108,11 @@ impl Iteration {
         let media = PhotonMapper::new(world, &config.mapper, &self.maps, &self.guides, &plan);
         let Self { paths, techniques, .. } = self;
         Camera { world, config, paths, techniques: *techniques, at_first, media }
+    }
+
+    /// What its light paths bring to the camera, one by one.
+    fn watched(&self) -> &[Splat] {
+        &self.paths.watched
     }
 
     /// What its light paths bring straight to the camera.

@@ -53,7 +53,13 @@ pub(crate) fn density(
     observer: &dyn Observer,
 ) -> (Density, u64) {
     let seed = Key::new(seed, 0, Stream::Pilot).with(1).hash();
-    let pass = LightPass { seed, iteration: 0, paths: TRIAL_PATHS, max_depth: config.mapper.max_depth };
+    let pass = LightPass {
+        seed,
+        iteration: 0,
+        paths: TRIAL_PATHS,
+        max_depth: config.mapper.max_depth,
+        watched: false,
+    };
     let everything = Techniques {
         reach: Reach { radius: 0.0, paths: 1.0 },
         to_lens: 0.0,

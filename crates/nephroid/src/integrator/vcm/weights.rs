@@ -52,6 +52,19 @@ pub(super) struct Sums {
     pub own: f64,
 }
 
+/// What a path counts for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Weighed {
+    pub weight: f32,
+    /// See [`Probe::technique`](crate::integrator::Probe::technique).
+    pub over_paths: f32,
+}
+
+impl Weighed {
+    /// That of a path which nothing else could have found.
+    pub const ALONE: Self = Self { weight: 1.0, over_paths: 1.0 };
+}
+
 /// A path as its two walks know it.
 pub(super) struct Whole<'a> {
     /// The lamp and what follows.
@@ -109,9 +122,10 @@ impl Whole<'_> {
 
 impl Techniques {
     /// The weight of a path that was found so.
-    pub fn weight(&self, path: &Whole<'_>, found: Technique) -> f32 {
-        let Sums { all, own, .. } = self.sums(path, found);
-        if own > 0.0 && all.is_finite() { (own / all) as f32 } else { 0.0 }
+    pub fn weigh(&self, path: &Whole<'_>, found: Technique) -> Weighed {
+        let Sums { all, own, of_paths } = self.sums(path, found);
+        let weight = if own > 0.0 && all.is_finite() { (own / all) as f32 } else { 0.0 };
+        Weighed { weight, over_paths: (all / of_paths) as f32 }
     }
 
     /// How often connections are tried between the last of s vertices from the lamp and the rest of a path; 0 where they
