@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use nephroid::film::{Aov, ImageError, ToneMap};
 
+use crate::denoise::DenoiseArgs;
 use crate::lab_args::{InspectArgs, PhotonsArgs};
 use crate::layers;
 use crate::method::Integrator;
@@ -115,6 +116,8 @@ pub struct RenderArgs {
     pub watch: WatchArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
     #[command(flatten)]
     pub photons: PhotonFlags,
 }

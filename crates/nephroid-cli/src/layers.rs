@@ -6,6 +6,7 @@ use nephroid_formats::image::{Layer, LayerData};
 use nephroid_formats::mitsuba::AovLayer;
 
 use crate::console::Messages;
+use crate::denoise::{GUIDES, NOISY};
 use crate::exit::Failure;
 use crate::lab_args::unknown;
 
@@ -28,6 +29,11 @@ pub struct DevelopedLayer {
 }
 
 impl LayerPlan {
+    /// One with the value's own name.
+    fn of(aov: Aov) -> Self {
+        Self { name: aov.name().to_owned(), aov, channels: aov.channels() }
+    }
+
     /// What it is called.
     pub fn name(&self) -> &str {
         &self.name
@@ -40,13 +46,13 @@ pub fn parse(name: &str) -> Result<Aov, String> {
         .ok_or_else(|| unknown(name, "there is no such value: it must be", &Aov::ALL.map(Aov::name)))
 }
 
-/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names. None if no file
-/// `keeps_layers`.
+/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names, which no file
+/// has unless it `keeps_layers`; and those that a picture is denoised with.
 pub fn choose(
     flags: &[Aov],
     of_scene: &[AovLayer],
     method: &Method,
-    keeps_layers: bool,
+    (keeps_layers, denoises): (bool, bool),
     messages: &mut Messages,
 ) -> Result<Vec<LayerPlan>, Failure> {
     let mut layers: Vec<LayerPlan> = Vec::new();
@@ -57,7 +63,7 @@ pub fn choose(
                 "--aov {name}: the integrator {reason}, so it has no {name}"
             )));
         }
-        let plan = LayerPlan { name: aov.name().to_owned(), aov: *aov, channels: aov.channels() };
+        let plan = LayerPlan::of(*aov);
         if !layers.contains(&plan) {
             layers.push(plan);
         }
@@ -80,7 +86,31 @@ pub fn choose(
         messages.warning("the layers that the scene asks for are left out: no OpenEXR file is written");
         layers.clear();
     }
+    if denoises {
+        add_guides(&mut layers)?;
+    }
     Ok(layers)
+}
+
+/// Adds what a denoiser asks for and is not there.
+fn add_guides(layers: &mut Vec<LayerPlan>) -> Result<(), Failure> {
+    let missing: Vec<Aov> =
+        GUIDES.into_iter().filter(|aov| layers.iter().all(|layer| layer.aov != *aov)).collect();
+    let names = missing.iter().map(|aov| aov.name()).chain([NOISY]);
+    if let Some(taken) = names.into_iter().find(|name| layers.iter().any(|layer| layer.name == *name)) {
+        return Err(Failure::Usage(format!(
+            "--denoise: has a layer \"{taken}\" of its own, and the scene's of that name is something else"
+        )));
+    }
+    layers.extend(missing.into_iter().map(|aov| LayerPlan::of(aov)));
+    Ok(())
+}
+
+/// A value for each pixel, its channels one behind the other; none if no layer has it.
+pub fn values(layers: &[DevelopedLayer], aov: Aov) -> Option<Vec<f32>> {
+    let channels = &layers.iter().find(|layer| layer.plan.aov == aov)?.image.channels;
+    let pixels = channels.first().map_or(0, Vec::len);
+    Some((0..pixels).flat_map(|i| channels.iter().map(move |channel| channel[i])).collect())
 }
 
 /// Why an integrator has no such value, its name first.
@@ -106,9 +136,9 @@ pub fn develop(layers: &[LayerPlan], film: Option<&AovFilm>) -> Vec<DevelopedLay
     layers.iter().filter_map(develop).collect()
 }
 
-/// Calls `write` with the layers as they are written, behind `first`.
+/// Calls `write` with the layers as they are written, behind the `first` ones.
 pub fn with_layers<T>(
-    first: Layer<'_>,
+    first: Vec<Layer<'_>>,
     layers: &[DevelopedLayer],
     write: impl FnOnce(&[Layer<'_>]) -> T,
 ) -> T {
@@ -116,7 +146,7 @@ pub fn with_layers<T>(
         .iter()
         .map(|l| l.plan.channels.iter().copied().zip(l.image.channels.iter().map(Vec::as_slice)).collect())
         .collect();
-    let mut all = vec![first];
+    let mut all = first;
     all.extend(layers.iter().zip(&channels).map(|(layer, channels)| {
         let (width, height) = (layer.image.width, layer.image.height);
         Layer { name: &layer.plan.name, data: LayerData::Channels { width, height, channels } }

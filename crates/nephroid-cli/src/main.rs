@@ -5,6 +5,7 @@ mod builtin;
 mod checkpoint;
 mod compare;
 mod console;
+mod denoise;
 mod exit;
 mod fault;
 mod films;

@@ -7,6 +7,7 @@ use nephroid_formats::film_file::{FilmFile, FilmFileError, FilmHeader, FilmMerge
 use serde_json::{Value, json};
 
 use crate::console::{self, Messages};
+use crate::denoise::{self, Denoised};
 use crate::exit::{Exit, Failure};
 use crate::films;
 use crate::job::{self, Job};
@@ -19,6 +20,7 @@ use crate::session_args::MergeArgs;
 pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
     let mut messages = Messages::new(args.quiet);
     let outputs = output::outputs(&args.outputs)?;
+    let denoiser = denoise::prepare(&args.denoise, &outputs, None)?;
     let FilmFile { header, film, aovs } = sum(&args.parts)?;
     let job = job_of_the_sum(&args.parts, &header, &outputs)?;
     let missing = missing(&header, &job);
@@ -41,10 +43,15 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
     }
     let layers = layers::develop(&job.layers, aovs.as_ref());
-    let picture = Picture { image: film.develop(), layers };
-    let (outputs, trouble) = output::write_all(outputs, &picture, &args.display, &|path| {
+    let mut picture = Picture { image: film.develop(), noisy: None, layers };
+    if denoiser.is_some() && !job.keeps_guides() {
+        messages.note(denoise::NO_GUIDES);
+    }
+    let (denoised, trouble) = denoise::try_to(denoiser.as_ref(), &mut picture);
+    let (outputs, more) = output::write_all(outputs, &picture, &args.display, &|path| {
         films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
     });
+    let trouble: Vec<String> = trouble.into_iter().chain(more).collect();
     messages.errors(&trouble);
     let noise = noise::noise(&film);
     if args.json {
@@ -61,6 +68,7 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             "samples_per_pixel": header.covered.total(),
             "noise": noise,
             "mean_luminance": film.mean_luminance(),
+            "denoised": denoised.as_ref().map(Denoised::json),
             "outputs": outputs,
             "messages": messages.list.into_iter().map(Value::from).collect::<Vec<_>>(),
         });
@@ -75,6 +83,9 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             films::passes(header.covered.ranges(), header.samples_per_pass),
             args.parts.len(),
         ));
+        if let Some(denoised) = &denoised {
+            console::say(&format!("denoised: {}", denoised.text()));
+        }
     }
     Failure::of_files(trouble).map_or(Ok(Exit::Done), Err)
 }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::checkpoint::Checkpoint;
 use crate::console::Messages;
+use crate::denoise::Denoised;
 use crate::films;
 use crate::layers::LayerPlan;
 use crate::method;
@@ -31,6 +32,8 @@ pub struct Report<'a> {
     pub rendered: &'a Rendered,
     /// The files that were written.
     pub outputs: &'a [Output],
+    /// By what they were denoised.
+    pub denoised: Option<&'a Denoised>,
     /// Where it is kept.
     pub checkpoint: Option<&'a Checkpoint>,
     /// How long it took to read the scene.
@@ -242,6 +245,9 @@ impl Report<'_> {
             let (path, times) = (checkpoint.path().display(), plural(checkpoint.written, "time"));
             let _ = writeln!(out, "kept: {path}, written {times} in {:.2} s", checkpoint.spent.as_secs_f64());
         }
+        if let Some(denoised) = self.denoised {
+            let _ = writeln!(out, "denoised: {}", denoised.text());
+        }
         if !self.outputs.is_empty() {
             let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
             let _ = writeln!(out, "written: {}", names.join(", "));
@@ -353,6 +359,7 @@ impl Report<'_> {
                 "medium": picture(s.picture.medium),
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
+            "denoised": self.denoised.map(Denoised::json),
             "outputs": outputs,
             "layers": r.layers.iter().map(LayerPlan::name).collect::<Vec<_>>(),
             "messages": warnings,

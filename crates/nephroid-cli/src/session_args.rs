@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::args::{DisplayArgs, LimitArgs, seconds};
+use crate::denoise::DenoiseArgs;
 
 /// Passes A, …, B−1 of a render, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +71,11 @@ pub struct ResumeArgs {
     pub limits: FurtherArgs,
     #[command(flatten)]
     pub watch: WatchArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
+    /// Write the pictures as they are rendered, even if the render was to denoise them
+    #[arg(long, conflicts_with = "denoise", help_heading = "Denoising")]
+    pub no_denoise: bool,
 }
 
 /// Another end than the one planned.
@@ -113,6 +119,8 @@ pub struct MergeArgs {
     pub json: bool,
     #[command(flatten)]
     pub display: DisplayArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
 }
 
 fn pass_range(text: &str) -> Result<PassRange, String> {

@@ -3,6 +3,7 @@
 // `clippy.toml` allows it in tests, but not in what tests have in common.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod denoising;
 mod fogs;
 mod integrators;
 mod kills;
