@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use nephroid::film::{Aov, AovFilm, Film, FilmCounts};
+use nephroid::film::{Aov, AovFilm, Convergence, Film, FilmCounts};
 use serde_json::{Map, Value, json};
 
 use super::{Covered, FilmFileProblem};
@@ -19,6 +19,8 @@ pub struct FilmHeader {
     pub iterations: u64,
     /// What did not go into it as it came.
     pub counts: FilmCounts,
+    /// How far its steps were apart, for the error that the picture states. Zeros are known of no step.
+    pub convergence: Convergence,
     /// Which samples of each pixel it holds.
     pub covered: Covered,
     /// Samples of a pixel in each pass; at least one.
@@ -59,6 +61,7 @@ impl FilmHeader {
             "iterations": self.iterations,
             "saturated": self.counts.saturated,
             "non_finite": self.counts.non_finite,
+            "convergence": self.convergence.numbers(),
             "covered": covered,
             "samples_per_pass": self.samples_per_pass,
             "identity": identity,
@@ -80,6 +83,10 @@ impl FilmHeader {
                 saturated: fields.number("saturated")?,
                 non_finite: fields.number("non_finite")?,
             },
+            convergence: fields.get("convergence", "six numbers", |v| {
+                let numbers = list(v, Value::as_u64)?.try_into().ok()?;
+                Some(Convergence::from_numbers(numbers))
+            })?,
             covered: fields.get("covered", "ranges in order", |v| Covered::from_ranges(list(v, range)?))?,
             samples_per_pass: fields.get("samples_per_pass", "a number from 1 on", |v| {
                 u32::try_from(v.as_u64()?).ok().filter(|n| *n > 0)

@@ -36,10 +36,12 @@ impl FilmMerger {
             sums.add_to(&mut self.sum.film, self.sum.aovs.as_mut())?;
             self.sum.film.count(header.iterations, header.counts);
             self.parts.push((path.to_owned(), header.covered.clone()));
+            let mut convergence = self.sum.header.convergence;
+            convergence.merge(&header.convergence);
             let is_first = first_sample(&header) < first_sample(&self.sum.header);
             let of_render = if is_first { header } else { self.sum.header.clone() };
             self.sum.header = of_render.describing(&self.sum.film, self.sum.aovs.as_ref());
-            self.sum.header.covered = covered;
+            (self.sum.header.covered, self.sum.header.convergence) = (covered, convergence);
             Ok(())
         })
     }

@@ -45,8 +45,9 @@ pub use write::{encode_film, write_film};
 /// What a film file begins with.
 const MAGIC: &[u8; 8] = b"NEPHFILM";
 
-/// The version that is written, and the only one that can be read: squares of version 1 had fewer bits behind the point.
-const VERSION: u32 = 2;
+/// The version that is written, and the only one that can be read: squares of version 1 had fewer bits behind the point,
+/// and version 2 knew nothing of how films converge.
+const VERSION: u32 = 3;
 
 /// Pixels of a block: they and their sums fit into a processor's second cache.
 const BLOCK: usize = 1024;

@@ -2,12 +2,14 @@
 
 mod aov;
 mod aov_film;
+mod convergence;
 mod error;
 mod filter;
 mod filter_sampler;
 mod fixed;
 mod merge_error;
 mod pixel;
+mod quality;
 mod splatter;
 mod sums;
 #[cfg(test)]
@@ -17,11 +19,13 @@ mod tonemap_name;
 
 pub use aov::{Aov, AovSample};
 pub use aov_film::{AovFilm, AovImage, AovSum};
+pub use convergence::Convergence;
 pub use error::{ImageError, SizeMismatch, difference_picture};
 pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};
 pub use merge_error::MergeError;
 pub use pixel::{PixelSum, PixelTotal};
+pub use quality::Quality;
 pub(crate) use splatter::Splatter;
 pub use sums::{Film, FilmCounts};
 pub use tonemap::{Equalization, ToneMap, White};

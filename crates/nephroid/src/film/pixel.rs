@@ -120,7 +120,15 @@ impl PixelTotal {
         n / (n - 1.0) * spread / (weight * weight)
     }
 
-    fn weight(&self) -> f64 {
+    /// The square of the luminance that the pixel has without noise, as far as it is known: noise adds its variance to
+    /// the square.
+    pub(super) fn light_sq(&self, unit: i32) -> f64 {
+        let mean = luminance(self.mean(unit));
+        let variance = self.variance(unit);
+        if variance.is_finite() { (mean * mean - variance).max(0.0) } else { mean * mean }
+    }
+
+    pub(super) fn weight(&self) -> f64 {
         WEIGHT.value(i128::from(self.weight), 0)
     }
 }

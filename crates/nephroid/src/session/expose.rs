@@ -1,6 +1,6 @@
 //! The camera pass of a step, with further values of the picture or without.
 
-use crate::film::{AovFilm, AovSum, Film, PixelSum};
+use crate::film::{AovFilm, AovSum, Convergence, Film, PixelSum};
 use crate::integrator::{AovProbe, Brought, Estimator, PictureSums};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -53,6 +53,14 @@ impl Exposed {
                     aovs.add_iteration(exposure.sums.iter().map(|(_, sums)| sums));
                 }
             }
+        }
+    }
+
+    /// Takes down how far it is from what was in the film before it was added.
+    pub fn compare(&self, film: &Film, convergence: &mut Convergence) {
+        match self {
+            Self::Picture(exposure) => convergence.add(film, |pixel| &exposure.sums[pixel]),
+            Self::WithAovs(exposure) => convergence.add(film, |pixel| &exposure.sums[pixel].0),
         }
     }
 }

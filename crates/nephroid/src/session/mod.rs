@@ -3,6 +3,7 @@
 mod expose;
 mod place;
 mod plan;
+mod quality;
 mod statistics;
 
 use expose::{Exposed, expose};
@@ -11,6 +12,7 @@ pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
 
 use crate::film::{Aov, AovFilm, Film, MergeError};
+pub use crate::film::{Convergence, Quality};
 use crate::integrator::{
     CameraPlan, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
 };
@@ -59,6 +61,7 @@ pub struct Session<'w> {
     settings: RenderSettings,
     plan: RenderPlan,
     film: Film,
+    convergence: Convergence,
     aovs: Option<AovFilm>,
     /// A step that was stopped, as far as it got.
     torn: Option<Exposed>,
@@ -84,6 +87,7 @@ impl<'w> Session<'w> {
             settings,
             plan,
             film: Film::with_unit(window.width, window.height, world.radiance_unit()),
+            convergence: Convergence::default(),
             aovs: None,
             torn: None,
             maps: None,
@@ -239,6 +243,7 @@ impl<'w> Session<'w> {
         if complete {
             self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
+            exposed.compare(&self.film, &mut self.convergence);
         } else {
             self.torn = Some(exposed);
         }
