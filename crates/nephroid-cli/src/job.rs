@@ -193,6 +193,7 @@ mod tests {
                 samples: None,
                 passes: Some(9),
                 seconds: Some(1.5),
+                target_error: Some(0.05),
                 range: Some(PassRange { begin: 2, end: 5 }),
             },
             layers: vec![layer("depth", Aov::Depth), layer("my albedo", Aov::Albedo)],
@@ -207,6 +208,7 @@ mod tests {
             let text = job.to_json().to_string();
             assert_eq!(Job::from_json(&serde_json::from_str(&text).unwrap()), Some(job.clone()));
             (job.scene, job.limits.range, job.limits.seconds) = (None, None, None);
+            job.limits.target_error = None;
         }
     }
 

@@ -9,6 +9,7 @@ use crate::console::Messages;
 use crate::denoise::{GUIDES, NOISY};
 use crate::exit::Failure;
 use crate::lab_args::unknown;
+use crate::quality;
 
 /// A layer to write.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,18 @@ pub struct LayerPlan {
     /// What its channels are called.
     pub channels: &'static [&'static str],
 }
+
+/// A value of `--aov`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayerFlag {
+    /// One that a render keeps.
+    Kept(Aov),
+    /// The error that each pixel is expected to have, which its sums tell.
+    Error,
+}
+
+/// The layer of [`LayerFlag::Error`].
+pub const ERROR: &str = "error";
 
 /// A layer with its values.
 #[derive(Clone, Debug)]
@@ -41,22 +54,30 @@ impl LayerPlan {
 }
 
 /// The value of a name on the command line.
-pub fn parse(name: &str) -> Result<Aov, String> {
-    Aov::parse(name)
-        .ok_or_else(|| unknown(name, "there is no such value: it must be", &Aov::ALL.map(Aov::name)))
+pub fn parse(name: &str) -> Result<LayerFlag, String> {
+    if name == ERROR {
+        return Ok(LayerFlag::Error);
+    }
+    let names: Vec<&str> = Aov::ALL.into_iter().map(Aov::name).chain([ERROR]).collect();
+    let kept = Aov::parse(name).map(LayerFlag::Kept);
+    kept.ok_or_else(|| unknown(name, "there is no such value: it must be", &names))
 }
 
 /// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names, which no file
 /// has unless it `keeps_layers`; and those that a picture is denoised with.
 pub fn choose(
-    flags: &[Aov],
+    flags: &[LayerFlag],
     of_scene: &[AovLayer],
     method: &Method,
     (keeps_layers, denoises): (bool, bool),
     messages: &mut Messages,
 ) -> Result<Vec<LayerPlan>, Failure> {
     let mut layers: Vec<LayerPlan> = Vec::new();
-    for aov in flags {
+    for flag in flags {
+        let LayerFlag::Kept(aov) = flag else {
+            quality::check(method, "--aov error")?;
+            continue;
+        };
         if let Some(reason) = lacks(method, *aov) {
             let name = aov.name();
             return Err(Failure::Usage(format!(
@@ -68,7 +89,7 @@ pub fn choose(
             layers.push(plan);
         }
     }
-    if !layers.is_empty() && !keeps_layers {
+    if !flags.is_empty() && !keeps_layers {
         let message = "--aov: layers are written to OpenEXR and film files only; name one with -o FILE.exr";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -85,6 +106,11 @@ pub fn choose(
     if !layers.is_empty() && !keeps_layers {
         messages.warning("the layers that the scene asks for are left out: no OpenEXR file is written");
         layers.clear();
+    }
+    if flags.contains(&LayerFlag::Error) && layers.iter().any(|layer| layer.name == ERROR) {
+        return Err(Failure::Usage(
+            "--aov error: the scene has a layer of that name, which is something else".to_owned(),
+        ));
     }
     if denoises {
         add_guides(&mut layers)?;

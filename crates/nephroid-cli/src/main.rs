@@ -31,6 +31,7 @@ mod plan;
 mod plan_json;
 mod preview;
 mod progress;
+mod quality;
 mod render;
 mod rendering;
 mod report;

@@ -11,9 +11,10 @@ use crate::denoise::{self, Denoised};
 use crate::exit::{Exit, Failure};
 use crate::films;
 use crate::job::{self, Job};
-use crate::layers;
+use crate::layers::{self, LayerFlag};
 use crate::noise;
 use crate::output::{self, Kind, Output, Picture};
+use crate::quality;
 use crate::session_args::MergeArgs;
 
 /// Adds films up.
@@ -43,13 +44,22 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
     }
     let layers = layers::develop(&job.layers, aovs.as_ref());
-    let mut picture = Picture { image: film.develop(), noisy: None, layers };
+    let quality = quality::of_film(&header.identity, &film, &header.convergence);
+    let wants_error = job.args().is_ok_and(|args| args.aovs.contains(&LayerFlag::Error));
+    let error = (wants_error && quality.is_some()).then(|| film.relative_errors());
+    let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
     if denoiser.is_some() && !job.keeps_guides() {
         messages.note(denoise::NO_GUIDES);
     }
     let (denoised, trouble) = denoise::try_to(denoiser.as_ref(), &mut picture);
     let (outputs, more) = output::write_all(outputs, &picture, &args.display, &|path| {
-        films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
+        films::write(
+            path,
+            (&film, aovs.as_ref(), header.convergence),
+            header.covered.clone(),
+            &header.identity,
+            &job,
+        )
     });
     let trouble: Vec<String> = trouble.into_iter().chain(more).collect();
     messages.errors(&trouble);
@@ -67,6 +77,7 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             "samples_per_pass": header.samples_per_pass,
             "samples_per_pixel": header.covered.total(),
             "noise": noise,
+            "quality": quality.as_ref().map(quality::json),
             "mean_luminance": film.mean_luminance(),
             "denoised": denoised.as_ref().map(Denoised::json),
             "outputs": outputs,
@@ -74,9 +85,13 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         });
         console::result(&format!("{object}\n"))?;
     } else if !args.quiet {
-        let noise = noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
+        let good = match (&quality, noise) {
+            (Some(quality), _) => format!(", {}", quality::text(quality)),
+            (None, Some(noise)) => format!(", noise {}", noise::percent(noise)),
+            (None, None) => String::new(),
+        };
         console::say(&format!(
-            "{} by {} pixels, {} samples each, {} of {} films{noise}",
+            "{} by {} pixels, {} samples each, {} of {} films{good}",
             film.width(),
             film.height(),
             header.covered.total(),

@@ -21,12 +21,13 @@ use crate::exit::{Exit, Failure};
 use crate::films::{self, Begun};
 use crate::identity;
 use crate::job::Order;
-use crate::layers;
+use crate::layers::{self, LayerFlag};
 use crate::load;
 use crate::method;
 use crate::output::{self, Kind, Output, Picture};
-use crate::plan::Plan;
+use crate::plan::{Done, Plan};
 use crate::preview::Previews;
+use crate::quality;
 use crate::rendering::{self, Companions, Ended, Rendered, Task};
 use crate::report::Report;
 
@@ -79,6 +80,7 @@ pub fn go(
         rendered: &rendered,
         outputs: &outputs,
         denoised: denoised.as_ref(),
+        wants_error: args.aovs.contains(&LayerFlag::Error),
         checkpoint: checkpoint.as_ref(),
         reading,
         writing: writing.elapsed(),
@@ -125,8 +127,13 @@ fn prepare(
     }
     let plan = match &resumed {
         Some((begun, limits)) => {
-            let done = (begun.job.plan.camera.samples_per_pixel, begun.covered.end);
-            begun.job.limits.resumed(limits, begun.job.spent, done)?
+            let quality = quality::of(&method, &begun.film, &begun.convergence);
+            let done = Done {
+                samples_per_pass: begun.job.plan.camera.samples_per_pixel,
+                samples: begun.covered.end,
+                error: quality.map(|quality| quality.interval[1]),
+            };
+            begun.job.limits.resumed(limits, begun.job.spent, &done)?
         }
         None => {
             let progressive = matches!(method, Method::Ppm(_));
@@ -134,6 +141,9 @@ fn prepare(
             whole.part(&args.limits, args.session.pass_range, progressive)?
         }
     };
+    if plan.target_error.is_some() {
+        quality::check(&method, "--target-error")?;
+    }
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
     let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
     let begun = resumed.map(|(begun, _)| begun);
@@ -227,7 +237,8 @@ fn write(
     outputs.retain(|output| output.kind != Kind::Film || rendered.has_film());
     let (film, further) = &rendered.picture;
     let layers = layers::develop(&rendered.layers, further.as_ref());
-    let mut picture = Picture { image: film.develop(), noisy: None, layers };
+    let error = rendered.error_image.clone().filter(|_| args.aovs.contains(&LayerFlag::Error));
+    let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
     let (denoised, trouble) = denoise::try_to(denoiser, &mut picture);
     let (outputs, more) =
         output::write_all(outputs, &picture, &args.display, &|path| rendered.write_film(path));

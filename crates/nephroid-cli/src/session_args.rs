@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::{DisplayArgs, LimitArgs, seconds};
+use crate::args::{DisplayArgs, LimitArgs, percentage, seconds};
 use crate::denoise::DenoiseArgs;
 
 /// Passes A, …, B−1 of a render, from 0.
@@ -91,11 +91,14 @@ pub struct FurtherArgs {
     /// Seconds from now; where the render was finished, beyond its end
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
+    /// The error of the picture that it states itself; where the render was finished, beyond its end
+    #[arg(long, value_name = "PERCENT", value_parser = percentage)]
+    pub target_error: Option<f64>,
 }
 
 impl From<FurtherArgs> for LimitArgs {
-    fn from(FurtherArgs { spp, passes, time }: FurtherArgs) -> Self {
-        Self { spp, passes, time }
+    fn from(FurtherArgs { spp, passes, time, target_error }: FurtherArgs) -> Self {
+        Self { spp, passes, time, target_error }
     }
 }
 

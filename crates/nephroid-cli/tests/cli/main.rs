@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod denoising;
+mod errors;
 mod fogs;
 mod integrators;
 mod kills;
