@@ -83,7 +83,7 @@ impl FilmHeader {
                 saturated: fields.number("saturated")?,
                 non_finite: fields.number("non_finite")?,
             },
-            convergence: fields.get("convergence", "six numbers", |v| {
+            convergence: fields.get("convergence", "nine numbers", |v| {
                 let numbers = list(v, Value::as_u64)?.try_into().ok()?;
                 Some(Convergence::from_numbers(numbers))
             })?,

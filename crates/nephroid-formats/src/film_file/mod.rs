@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Header and blocks each have their length and their checksum before them, 4 and 4 bytes. A block has a byte for
-//! the width of each of its columns, and then the columns: of the picture those of red, green, blue, squares, weights
-//! and estimates; of further values the three weights and all numbers, as [`AovFilm::sums`] has them. All numbers are
-//! little-endian; a pixel of the picture takes 60 bytes at most.
+//! the width of each of its columns, and then the columns: of the picture those of red, green, blue, squares, weights,
+//! estimates, blur, its squares and marks; of further values the three weights and all numbers, as [`AovFilm::sums`] has them. All numbers are
+//! little-endian; a pixel of the picture takes 96 bytes at most.
 //!
 //! [`AovFilm::sums`]: nephroid::film::AovFilm::sums
 

@@ -11,8 +11,9 @@ use super::{BLOCK, FilmFile, FilmFileError, FilmFileProblem, FilmHeader, MAGIC, 
 /// Bytes before the first piece.
 const START: usize = MAGIC.len() + 4;
 
-/// Largest bytes of a radiance's channels, of the squares, the weight and the number of estimates of a pixel.
-const PICTURE_WIDTHS: [u8; 6] = [12, 12, 12, 12, 8, 4];
+/// Largest bytes of a radiance's channels, of the squares, the weight and the number of estimates of a pixel, of what blur
+/// does to it, of the squares of that and of its mark.
+const PICTURE_WIDTHS: [u8; 9] = [12, 12, 12, 12, 8, 4, 12, 12, 12];
 
 /// Largest bytes of a sum of a further value.
 const VALUE_WIDTH: u8 = 16;
@@ -188,5 +189,8 @@ fn pixel_total(columns: &[Column<'_>], row: usize) -> PixelTotal {
         luminance_sq: columns[3].get(row).cast_unsigned() & (u128::MAX >> 32),
         weight: columns[4].get(row) as i64,
         samples: (columns[5].get(row) as i32).cast_unsigned(),
+        blur: columns[6].get(row),
+        blur_sq: columns[7].get(row).cast_unsigned() & (u128::MAX >> 32),
+        mark: columns[8].get(row),
     }
 }

@@ -99,13 +99,16 @@ fn films_come_back_to_the_bit() {
 }
 
 #[test]
-fn extreme_sums_come_back_and_take_sixty_bytes_a_pixel() {
+fn extreme_sums_come_back_and_take_96_bytes_a_pixel() {
     let signs = |negative: bool| if negative { -(1i128 << 95) } else { (1 << 95) - 1 };
     let total = |i: usize| PixelTotal {
         radiance: [2, 3, 5].map(|n| signs(i.is_multiple_of(n))),
         luminance_sq: [0, 1 << 95, (1 << 95) - 1, (1 << 96) - 1][i % 4],
         weight: [i64::MIN, i64::MAX, 0, -1][i % 4],
         samples: [0, u32::MAX, 1 << 31, 1][i % 4],
+        blur: signs(i.is_multiple_of(7)),
+        mark: signs(i.is_multiple_of(11)),
+        blur_sq: [(1 << 96) - 1, 0, 1 << 95, (1 << 95) - 1][i % 4],
     };
     let pixels: Vec<_> = (0..64 * 64).map(total).collect();
     let counts = FilmCounts { saturated: u64::MAX, non_finite: u64::MAX };
@@ -117,8 +120,8 @@ fn extreme_sums_come_back_and_take_sixty_bytes_a_pixel() {
     let plain = FilmFile { header: header.describing(&film, None), film, aovs: None };
     let bytes = bytes_of(&plain);
     assert_eq!(read_film_bytes(&bytes).unwrap(), plain);
-    // What comes on top: the header, and 14 bytes for each of four blocks.
-    assert!(bytes.len() <= 60 * 64 * 64 + 512, "{}", bytes.len());
+    // What comes on top: the header, and 17 bytes for each of four blocks.
+    assert!(bytes.len() <= 96 * 64 * 64 + 512, "{}", bytes.len());
     let full = FilmFile {
         header: plain.header.describing(&plain.film, Some(&aovs)),
         film: plain.film,

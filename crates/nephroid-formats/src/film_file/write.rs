@@ -65,14 +65,18 @@ pub fn encode_film(
 }
 
 fn pack_picture(totals: &[PixelTotal], block: &mut Vec<u8>) {
-    start_block(block, 6);
+    start_block(block, 9);
     for channel in 0..3 {
         block[channel] = pack(totals.iter().map(|t| t.radiance[channel]), block);
     }
     // Of 96 bits without a sign the first is taken as one, so that a saturated sum is −1 and takes one byte.
-    block[3] = pack(totals.iter().map(|t| ((t.luminance_sq << 32) as i128) >> 32), block);
+    let signed = |square: u128| ((square << 32) as i128) >> 32;
+    block[3] = pack(totals.iter().map(|t| signed(t.luminance_sq)), block);
     block[4] = pack(totals.iter().map(|t| i128::from(t.weight)), block);
     block[5] = pack(totals.iter().map(|t| i128::from(t.samples.cast_signed())), block);
+    block[6] = pack(totals.iter().map(|t| t.blur), block);
+    block[7] = pack(totals.iter().map(|t| signed(t.blur_sq)), block);
+    block[8] = pack(totals.iter().map(|t| t.mark), block);
 }
 
 /// An empty block that has room for the widths of its columns.

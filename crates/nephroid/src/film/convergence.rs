@@ -1,12 +1,8 @@
 //! How far apart the estimates of a picture are, as a few numbers that go with its film.
 
-use rayon::prelude::*;
-
-use super::Film;
+use super::light::Lights;
 use super::pixel::{PixelSum, PixelTotal, luminance};
-
-/// Pixels whose terms are summed one after another, so that the sum is the same on any number of threads.
-const CHUNK: usize = 4096;
+use super::{Film, Pixels};
 
 /// Σ q counts in steps of 2^−64, which are below the rounding of any q that matters.
 const SUM_BITS: f64 = 64.0;
@@ -25,6 +21,13 @@ const LARGEST: f64 = 64.0;
 /// is the squared error of one step. How much it jumps from one step to the next tells how much a squared error of
 /// such pictures scatters: pixels that share photons err together, and a few bright samples may make all of it.
 ///
+/// Whenever the film has a power of two of steps, it is also held against what it was at half of them:
+///
+///     ρ = mean over pixels of (ā_m − ā_2m)² / d  over  mean of the variance of ā_2m / d
+///
+/// is 1 if the halves are independent. Samples of a pixel that go on from one another are more evenly spread the more of
+/// them there are, and ρ is less.
+///
 /// What is kept are whole numbers, so [merging](Self::merge) parts of a render gives the same in any order. They go
 /// with the film wherever it goes, by [`Self::numbers`] into a file, and back by
 /// [`Session::with_convergence`](crate::session::Session::with_convergence): a render that was interrupted then states the
@@ -37,29 +40,37 @@ pub struct Convergence {
     spread: u64,
     /// Bits of the last q; 0 if the next one follows upon none.
     last: u64,
+    /// Iterations of the film when it was marked; 0 if it is not, or was merged since.
+    marked: u64,
+    /// Estimates of a pixel when halves were compared for the last time; 0 if they never were.
+    compared: u64,
+    /// Bits of ln ρ as it was then.
+    ln_ratio: u64,
 }
 
 impl Convergence {
     /// How many numbers it is.
-    pub const NUMBERS: usize = 6;
+    pub const NUMBERS: usize = 9;
 
     /// All that it is, for a file.
     pub fn numbers(&self) -> [u64; Self::NUMBERS] {
-        [self.steps, (self.sum >> 64) as u64, self.sum as u64, self.differences, self.spread, self.last]
+        let &Self { steps, sum, differences, spread, last, marked, compared, ln_ratio } = self;
+        [steps, (sum >> 64) as u64, sum as u64, differences, spread, last, marked, compared, ln_ratio]
     }
 
     /// From what [`Self::numbers`] gave.
-    pub fn from_numbers([steps, high, low, differences, spread, last]: [u64; Self::NUMBERS]) -> Self {
+    pub fn from_numbers(numbers: [u64; Self::NUMBERS]) -> Self {
+        let [steps, high, low, differences, spread, last, marked, compared, ln_ratio] = numbers;
         let sum = u128::from(high) << 64 | u128::from(low);
-        Self { steps, sum, differences, spread, last }
+        Self { steps, sum, differences, spread, last, marked, compared, ln_ratio }
     }
 
     /// Adds that of another part of the render, whose film is merged into this one's.
     pub fn merge(&mut self, other: &Self) {
-        if other.steps == 0 {
+        if *other == Self::default() {
             return;
         }
-        if self.steps == 0 {
+        if *self == Self::default() {
             *self = *other;
             return;
         }
@@ -67,7 +78,10 @@ impl Convergence {
         self.sum = self.sum.saturating_add(other.sum);
         self.differences = self.differences.saturating_add(other.differences);
         self.spread = self.spread.saturating_add(other.spread);
-        self.last = 0;
+        // What follows upon the sum of both is comparable with neither.
+        (self.last, self.marked) = (0, 0);
+        let comparison = |c: &Self| (c.compared, c.ln_ratio);
+        (self.compared, self.ln_ratio) = comparison(self).max(comparison(other));
     }
 
     /// Steps that were compared with those before: the first of a film is not.
@@ -91,29 +105,49 @@ impl Convergence {
         self.spread as f64 * libm::exp2(-SPREAD_BITS) / self.differences.max(1) as f64
     }
 
-    /// Takes a step in that was just added to the film: `sums(pixel)` is what it brought.
-    pub fn add<'s>(&mut self, film: &Film, sums: impl Fn(usize) -> &'s PixelSum + Sync) {
-        let mean = film.mean_luminance();
-        let unit = film.unit();
-        let floor = 0.01 * mean * mean;
-        let chunks: Vec<(f64, u64)> = film
-            .pixels()
-            .par_chunks(CHUNK)
-            .enumerate()
-            .map(|(chunk, totals)| {
-                let mut found = (0.0, 0);
-                for (i, total) in totals.iter().enumerate() {
-                    if let Some(term) = term(total, sums(chunk * CHUNK + i), unit, floor) {
-                        found.0 += term;
-                        found.1 += 1;
-                    }
-                }
-                found
-            })
-            .collect();
-        let (sum, count) = chunks.into_iter().fold((0.0, 0), |(s, n), (term, count)| (s + term, n + count));
-        if count > 0 {
-            self.push(sum / count as f64);
+    /// Estimates of a pixel when halves were compared for the last time, and ln ρ as it was then. `None` if they never were.
+    pub fn ln_ratio(&self) -> Option<(u64, f64)> {
+        let value = f64::from_bits(self.ln_ratio);
+        (self.compared > 0 && value.is_finite()).then_some((self.compared, value))
+    }
+
+    /// Takes a step in that was just added to the film: `sums(pixel)` is what it brought. Marks the film if it is time.
+    pub fn add<'s>(&mut self, film: &mut Film, pixels: Pixels, sums: impl Fn(usize) -> &'s PixelSum + Sync) {
+        let compares = film.iterations().is_power_of_two();
+        if !compares && pixels == Pixels::Apart {
+            return;
+        }
+        let lights = Lights::of(film);
+        if pixels == Pixels::Together {
+            let terms = |pixel: usize| off_sq(&film.pixels()[pixel], lights.means[pixel], sums(pixel));
+            if let Some(q) = lights.mean(terms) {
+                self.push(q);
+            }
+        }
+        if compares {
+            self.compare(film, &lights);
+            film.mark();
+            self.marked = film.iterations();
+        }
+    }
+
+    /// Compares the film with what it was at half of its iterations.
+    fn compare(&mut self, film: &Film, lights: &Lights) {
+        if self.marked.checked_mul(2) != Some(film.iterations()) {
+            return;
+        }
+        let off_sq = |pixel: usize| {
+            let off = film.pixels()[pixel].mean_at_half(film.unit()) - lights.means[pixel];
+            lights.variances[pixel].is_finite().then_some(off * off)
+        };
+        let variance = |pixel: usize| Some(lights.variances[pixel]).filter(|variance| variance.is_finite());
+        let estimates = film.pixels().iter().map(|pixel| pixel.samples).max().unwrap_or(0);
+        if let (Some(found), Some(told)) = (lights.mean(off_sq), lights.mean(variance))
+            && found > 0.0
+            && told > 0.0
+        {
+            self.compared = u64::from(estimates);
+            self.ln_ratio = libm::log(found / told).to_bits();
         }
     }
 
@@ -131,16 +165,15 @@ impl Convergence {
     }
 }
 
-/// What a pixel adds to q; nothing if it was left out of the film, or has no two steps.
-fn term(total: &PixelTotal, sum: &PixelSum, unit: i32, floor: f64) -> Option<f64> {
+/// (x_n − ā_(n−1))² · W_(n−1)/W_n of a pixel whose mean is now ā_n; nothing if the step was left out of the film, or is the
+/// first.
+fn off_sq(total: &PixelTotal, mean: f64, sum: &PixelSum) -> Option<f64> {
     let weight = total.weight();
     let before = weight - sum.weight;
     if !sum.is_usable() || !(sum.weight > 0.0 && before > 0.0) {
         return None;
     }
-    let mean = luminance(total.mean(unit));
+    // (x_n − ā_(n−1)) is (x_n − ā_n) W_n/W_(n−1).
     let off = luminance(sum.radiance) / sum.weight - mean;
-    let divisor = total.light_sq(unit) + floor;
-    // (x − ā_(n−1)) is (x − ā_n) W_n/W_(n−1).
-    (divisor > 0.0).then(|| off * off * (weight / before) / divisor)
+    Some(off * off * (weight / before))
 }

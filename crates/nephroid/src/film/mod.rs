@@ -7,9 +7,12 @@ mod error;
 mod filter;
 mod filter_sampler;
 mod fixed;
+mod light;
 mod merge_error;
 mod pixel;
 mod quality;
+#[cfg(test)]
+mod quality_tests;
 mod splatter;
 mod sums;
 #[cfg(test)]
@@ -25,7 +28,7 @@ pub use filter::Filter;
 pub use filter_sampler::{FilterSample, FilterSampler};
 pub use merge_error::MergeError;
 pub use pixel::{PixelSum, PixelTotal};
-pub use quality::Quality;
+pub use quality::{Pixels, Quality};
 pub(crate) use splatter::Splatter;
 pub use sums::{Film, FilmCounts};
 pub use tonemap::{Equalization, ToneMap, White};

@@ -38,7 +38,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film for radiances around one. Takes 80 bytes a pixel.
+    /// An empty film for radiances around one. Takes 128 bytes a pixel.
     pub fn new(width: u32, height: u32) -> Self {
         Self::with_unit(width, height, 0)
     }
@@ -113,6 +113,11 @@ impl Film {
             }
         }
         self.iterations += 1;
+    }
+
+    /// Marks the sums as they are now.
+    pub(super) fn mark(&mut self) {
+        self.pixels.iter_mut().for_each(PixelTotal::set_mark);
     }
 
     /// Adds the iterations of another film, as if they had been added here.

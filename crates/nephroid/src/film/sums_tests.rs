@@ -53,7 +53,8 @@ fn any_order_and_any_split_give_the_same_bits() {
 
 #[test]
 fn order_does_not_matter_even_where_values_are_cut() {
-    let sum = |r: f64| PixelSum { radiance: [r, 0.0, 0.0], weight: 1.0, luminance_sq: 1e30, samples: 1 };
+    let sum =
+        |r: f64| PixelSum { radiance: [r, 0.0, 0.0], weight: 1.0, luminance_sq: 1e30, samples: 1, blur: 0.0 };
     let iterations = [sum(f64::MAX), sum(-f64::MAX), sum(3.0), sum(f64::MAX)];
     let film_of = |order: [usize; 4]| {
         let mut film = Film::new(1, 1);
@@ -78,6 +79,7 @@ fn the_sum_is_right_to_half_a_step_per_iteration() {
             luminance_sq: third * third,
             weight: 1.0,
             samples: 1,
+            blur: 0.0,
         }]);
     }
     let step = 0.5f64.powi(48);
@@ -90,7 +92,7 @@ fn the_sum_is_right_to_half_a_step_per_iteration() {
 
 #[test]
 fn a_pixel_with_nan_or_infinity_is_left_out_and_counted() {
-    let good = PixelSum { radiance: [2.0; 3], luminance_sq: 4.0, weight: 1.0, samples: 1 };
+    let good = PixelSum { radiance: [2.0; 3], luminance_sq: 4.0, weight: 1.0, samples: 1, blur: 0.0 };
     let mut film = Film::new(2, 1);
     film.add_iteration(&[good, good]);
     let bad_ones = [
@@ -243,6 +245,9 @@ fn sums_end_where_those_of_a_file_end() {
         luminance_sq: (1 << 96) - 1,
         weight: i64::MAX,
         samples: u32::MAX,
+        blur: -(1 << 95),
+        blur_sq: (1 << 96) - 1,
+        mark: (1 << 95) - 1,
     };
     film.add_pixels(0, &[most]);
     film.add_pixels(0, &[most]);
@@ -251,5 +256,7 @@ fn sums_end_where_those_of_a_file_end() {
     assert!(parts(most).is_some());
     assert!(parts(PixelTotal { radiance: [0, 0, 1 << 95], ..most }).is_none());
     assert!(parts(PixelTotal { luminance_sq: 1 << 96, ..most }).is_none());
+    assert!(parts(PixelTotal { blur: 1 << 95, ..most }).is_none());
+    assert!(parts(PixelTotal { blur_sq: 1 << 96, ..most }).is_none());
     assert!(Film::from_parts((1, 1), UNIT_LIMIT + 1, 1, FilmCounts::default(), vec![most]).is_none());
 }

@@ -1,11 +1,13 @@
 //! Integrators: each a configuration and one iteration.
 
+mod blur_probe;
 mod light_tracer;
 mod path;
 mod photon_mapper;
 mod probe;
 pub(crate) mod progressive;
 
+pub(crate) use blur_probe::BlurProbe;
 pub use light_tracer::LightTracerConfig;
 pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
@@ -17,7 +19,7 @@ pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 pub use progressive::PpmConfig;
 
 use crate::color::Rgb;
-use crate::film::Aov;
+use crate::film::{Aov, Pixels};
 
 /// The integrators and their configurations.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +53,17 @@ impl Method {
             Self::Ppm(config) => Some(&config.mapper),
             Self::Path(_) | Self::LightTracer(_) => None,
         }
+    }
+
+    /// Whether the variance of its films is that of all their noise, so that the error of a picture can be
+    /// [told](crate::film::Quality). The photon mapper's samples of an iteration share photons, whose noise it does not show.
+    pub fn tells_error(&self) -> bool {
+        !matches!(self, Self::PhotonMapper(_))
+    }
+
+    /// How the errors of its pixels hang together.
+    pub fn pixels(&self) -> Pixels {
+        if matches!(self, Self::Path(_)) { Pixels::Apart } else { Pixels::Together }
     }
 }
 

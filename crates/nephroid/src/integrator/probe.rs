@@ -149,14 +149,55 @@ pub(crate) trait Probe {
     fn light(&mut self, _part: LightPart, _radiance: Rgb) {}
     /// A medium is passed, and what it adds is multiplied as light without photons is.
     fn medium(&mut self, _passed: &Passed) {}
-    /// A photon counts in the look-up that is going on, with the direct light or with the other.
-    fn photon(&mut self, _photon: &Photon, _is_direct: bool, _radiance: Rgb) {}
+    /// A photon counts in the look-up that is going on, with the direct light or with the other. `_of_half` is what it
+    /// would bring if the squared radius were half as large.
+    fn photon(&mut self, _photon: &Photon, _is_direct: bool, _radiance: Rgb, _of_half: Rgb) {}
     /// A look-up is done.
     fn look_up(&mut self, _look_up: &LookUp, _gathered: Gathered) {}
 }
 
 impl Probe for () {
     const IDLE: bool = true;
+}
+
+/// Two probes that watch the same.
+impl<A: Probe, B: Probe> Probe for (A, B) {
+    const IDLE: bool = A::IDLE && B::IDLE;
+
+    fn begin(&mut self, gather_ray: Option<u64>, base: Rgb) {
+        self.0.begin(gather_ray, base);
+        self.1.begin(gather_ray, base);
+    }
+
+    fn carry(&mut self, throughput: Rgb) {
+        self.0.carry(throughput);
+        self.1.carry(throughput);
+    }
+
+    fn surface(&mut self, met: &Met<'_>) {
+        self.0.surface(met);
+        self.1.surface(met);
+    }
+
+    fn light(&mut self, part: LightPart, radiance: Rgb) {
+        self.0.light(part, radiance);
+        self.1.light(part, radiance);
+    }
+
+    fn medium(&mut self, passed: &Passed) {
+        self.0.medium(passed);
+        self.1.medium(passed);
+    }
+
+    fn photon(&mut self, photon: &Photon, is_direct: bool, radiance: Rgb, of_half: Rgb) {
+        self.0.photon(photon, is_direct, radiance, of_half);
+        self.1.photon(photon, is_direct, radiance, of_half);
+    }
+
+    fn look_up(&mut self, look_up: &LookUp, gathered: Gathered) {
+        self.0.look_up(look_up, gathered);
+        self.1.look_up(look_up, gathered);
+    }
 }
 
 /// An integrator that is ready to estimate camera samples.

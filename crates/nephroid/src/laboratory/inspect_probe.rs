@@ -217,7 +217,7 @@ impl Probe for InspectProbe<'_> {
         self.media.push(MediumPassed { gather_ray, depth, medium, length, light, transmittance });
     }
 
-    fn photon(&mut self, photon: &Photon, is_direct: bool, radiance: Rgb) {
+    fn photon(&mut self, photon: &Photon, is_direct: bool, radiance: Rgb, _: Rgb) {
         self.photons.push((*photon, is_direct, radiance));
     }
 

@@ -120,6 +120,29 @@ pub fn gather<I: PhotonIndex>(
     scratch: &mut NearestList,
     mut add: impl FnMut(&Photon, f32),
 ) -> Gathered {
+    gather_both(map, query, kernel, bandwidth, scratch, |photon, weights| add(photon, weights.whole))
+}
+
+/// What a photon counts in an estimate, in 1/m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// In the estimate.
+    pub whole: f32,
+    /// In one with half of its squared radius, from the same photons.
+    pub half: f32,
+}
+
+/// [`gather`], with what each photon would count if the squared radius were half as large: estimates from the same photons
+/// that have half of the blur. Both are right in the mean where light is uniform, as a part of the radius of the k-th
+/// photon is as good as all of it.
+pub fn gather_both<I: PhotonIndex>(
+    map: &PhotonMap<I>,
+    query: &Query,
+    kernel: Kernel,
+    bandwidth: Bandwidth,
+    scratch: &mut NearestList,
+    mut add: impl FnMut(&Photon, Weights),
+) -> Gathered {
     let (k, max_radius, part, least) = match bandwidth {
         Bandwidth::Nearest { k, max_radius } if max_radius > 0.0 => (k.max(2) as usize, max_radius, 1.0, 0.0),
         Bandwidth::Part { k, max_radius, part, least } if max_radius > 0.0 => {
@@ -160,7 +183,7 @@ pub fn gather<I: PhotonIndex>(
     let mut within = 0;
     // All of them if it is the whole radius.
     for neighbor in scratch.iter().take(count).filter(|n| part == 1.0 || n.dist_sq <= radius * radius) {
-        add(&map.photon(neighbor.place), spread.weight(neighbor.dist_sq));
+        add(&map.photon(neighbor.place), spread.weights(neighbor.dist_sq));
         within += 1;
     }
     Gathered { radius, count: within }
@@ -199,7 +222,7 @@ fn gather_within<I: PhotonIndex>(
     query: &Query,
     kernel: Kernel,
     radius: f32,
-    mut add: impl FnMut(&Photon, f32),
+    mut add: impl FnMut(&Photon, Weights),
 ) -> Gathered {
     let mut count = 0;
     if let Some(spread) = Spread::new(kernel, radius) {
@@ -212,7 +235,7 @@ fn gather_within<I: PhotonIndex>(
                 if let Some(d) = distance_sq(map, query, place, dist_sq)
                     && d <= radius_sq
                 {
-                    add(&map.photon(place), spread.weight(d));
+                    add(&map.photon(place), spread.weights(d));
                     count += 1;
                 }
             },
@@ -245,6 +268,14 @@ impl Spread {
     #[inline(always)]
     pub fn weight(&self, dist_sq: f32) -> f32 {
         self.per_area * self.kernel.shape((dist_sq * self.per_radius_sq).min(1.0))
+    }
+
+    /// That weight, and the one at the radius over √2.
+    #[inline(always)]
+    fn weights(&self, dist_sq: f32) -> Weights {
+        let of_half = 2.0 * dist_sq * self.per_radius_sq;
+        let half = if of_half <= 1.0 { 2.0 * self.per_area * self.kernel.shape(of_half) } else { 0.0 };
+        Weights { whole: self.weight(dist_sq), half }
     }
 }
 

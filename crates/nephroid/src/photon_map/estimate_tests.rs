@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use super::testing::{Rng, photon_at};
 use super::{
     Bandwidth, BruteForce, Gathered, Kernel, NearestList, Photon, PhotonIndex, PhotonMap, Photons, Query,
-    gather,
+    gather, gather_both,
 };
 use crate::color::Rgb;
 use crate::math::{Vec2, Vec3, warp};
@@ -340,4 +340,24 @@ fn a_gap_between_two_surfaces_ends_the_search() {
     assert_eq!(gathered.count, 199);
     let expected = 1.0 / (PI * 0.01);
     assert!((e / expected - 1.0).abs() < 0.03, "{e} is not {expected}: {gathered:?}");
+}
+
+/// What half of the squared radius would find is what a look-up of that radius does find.
+#[test]
+fn half_of_the_squared_radius_is_a_look_up_of_its_own() {
+    let mut rng = Rng::new(8);
+    let map = uniform_square(4000, &mut rng);
+    for kernel in [Kernel::Box, Kernel::Cone { k: 1.0 }, Kernel::Epanechnikov] {
+        for p in grid() {
+            let radius = 0.1;
+            let (mut half, mut scratch) = (0.0, NearestList::new());
+            let bandwidth = Bandwidth::Fixed { radius };
+            let gathered = gather_both(&map, &up(p), kernel, bandwidth, &mut scratch, |photon, weights| {
+                half += photon.power.r * weights.half;
+            });
+            let narrow = Bandwidth::Fixed { radius: radius / 2f32.sqrt() };
+            let (found, _) = irradiance(&map, &up(p), kernel, narrow);
+            assert!(gathered.count > 0 && (half / found - 1.0).abs() < 0.02, "{half} {found}");
+        }
+    }
 }

@@ -28,7 +28,7 @@ mod testing;
 pub use beams::{Beam, BeamMap, BeamWidth, Beams};
 pub use blur::Blur;
 pub use brute_force::BruteForce;
-pub use estimate::{Bandwidth, Gathered, Query, gather};
+pub use estimate::{Bandwidth, Gathered, Query, Weights, gather, gather_both};
 pub use grid_tree::GridTree;
 pub use index::{Item, NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;

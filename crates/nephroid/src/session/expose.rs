@@ -1,7 +1,7 @@
 //! The camera pass of a step, with further values of the picture or without.
 
-use crate::film::{AovFilm, AovSum, Convergence, Film, PixelSum};
-use crate::integrator::{AovProbe, Brought, Estimator, PictureSums};
+use crate::film::{AovFilm, AovSum, Convergence, Film, PixelSum, Pixels};
+use crate::integrator::{AovProbe, BlurProbe, Brought, Estimator, PictureSums};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::transport::{CameraPass, Exposure, camera_pass};
@@ -57,20 +57,20 @@ impl Exposed {
     }
 
     /// Takes down how far it is from what was in the film before it was added.
-    pub fn compare(&self, film: &Film, convergence: &mut Convergence) {
+    pub fn compare(&self, film: &mut Film, convergence: &mut Convergence, pixels: Pixels) {
         match self {
-            Self::Picture(exposure) => convergence.add(film, |pixel| &exposure.sums[pixel]),
-            Self::WithAovs(exposure) => convergence.add(film, |pixel| &exposure.sums[pixel].0),
+            Self::Picture(exposure) => convergence.add(film, pixels, |pixel| &exposure.sums[pixel]),
+            Self::WithAovs(exposure) => convergence.add(film, pixels, |pixel| &exposure.sums[pixel].0),
         }
     }
 }
 
-/// Takes the samples of a step.
+/// Takes the samples of a step. `with_blur` keeps what the blur of photon look-ups does, too.
 pub(super) fn expose(
     world: &World,
     estimator: &impl Estimator,
     pass: &CameraPass,
-    with_aovs: bool,
+    (with_aovs, with_blur): (bool, bool),
     observer: &dyn Observer,
 ) -> Exposed {
     let join = PictureSums::append;
@@ -82,11 +82,14 @@ pub(super) fn expose(
             NearestList::new,
             join,
             |mut sample, weight, neighbors, (picture, aovs): &mut (PixelSum, AovSum), total| {
-                let mut probe = AovProbe::new(&sample);
+                let mut probe = (AovProbe::new(&sample), BlurProbe::new());
                 let light = estimator.radiance(&mut sample, neighbors, &mut probe);
                 total.add(&light);
                 picture.add(light.total(), weight);
-                aovs.add(&probe.finish(&light), weight);
+                if with_blur {
+                    picture.add_blur(probe.1.finish(), weight);
+                }
+                aovs.add(&probe.0.finish(&light), weight);
             },
         ));
     }
@@ -97,7 +100,14 @@ pub(super) fn expose(
         NearestList::new,
         join,
         |mut sample, weight, neighbors, picture: &mut PixelSum, total| {
-            let light = estimator.radiance(&mut sample, neighbors, &mut ());
+            let light = if with_blur {
+                let mut probe = BlurProbe::new();
+                let light = estimator.radiance(&mut sample, neighbors, &mut probe);
+                picture.add_blur(probe.finish(), weight);
+                light
+            } else {
+                estimator.radiance(&mut sample, neighbors, &mut ())
+            };
             total.add(&light);
             picture.add(light.total(), weight);
         },

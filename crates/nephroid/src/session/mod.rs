@@ -148,13 +148,13 @@ impl<'w> Session<'w> {
             Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
-                let exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                let exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
                 self.take(exposed)
             }
             Method::LightTracer(config) => {
                 let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
-                let mut exposed = expose(self.world, &tracer, &pass, self.aovs.is_some(), observer);
+                let mut exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
                 exposed.add(&light);
                 self.take(exposed)
             }
@@ -238,8 +238,9 @@ impl<'w> Session<'w> {
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
         let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
-        let mut exposed = expose(world, &mapper, pass, self.aovs.is_some(), observer);
-        if matches!(self.settings.method, Method::Ppm(_)) {
+        let progressive = matches!(self.settings.method, Method::Ppm(_));
+        let mut exposed = expose(world, &mapper, pass, (self.aovs.is_some(), progressive), observer);
+        if progressive {
             exposed.count_as_one_estimate();
         }
         self.take(exposed)
@@ -251,7 +252,7 @@ impl<'w> Session<'w> {
         if complete {
             self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
-            exposed.compare(&self.film, &mut self.convergence);
+            exposed.compare(&mut self.film, &mut self.convergence, self.settings.method.pixels());
         } else {
             self.torn = Some(exposed);
         }

@@ -2,26 +2,20 @@
 
 use super::Session;
 use crate::film::{Convergence, Quality};
-use crate::integrator::Method;
-
-impl Method {
-    /// Whether the variance of its films is that of all their noise, so that a picture's [`Quality`] can be told. The photon
-    /// mapper's samples of an iteration share photons that it does not show.
-    pub fn tells_quality(&self) -> bool {
-        !matches!(self, Self::PhotonMapper(_))
-    }
-}
 
 impl Session<'_> {
     /// The error of the picture so far. `None` while there are too few estimates to tell, and for methods that
-    /// [do not tell](Method::tells_quality).
+    /// [do not tell](crate::integrator::Method::tells_error).
     pub fn quality(&self) -> Option<Quality> {
-        self.settings.method.tells_quality().then(|| Quality::of(&self.film, &self.convergence)).flatten()
+        let method = &self.settings.method;
+        method.tells_error().then(|| Quality::of(&self.film, &self.convergence, method.pixels())).flatten()
     }
 
     /// The relative error of each pixel, row by row, whose mean square is that of [`Self::quality`].
     pub fn error_image(&self) -> Option<Vec<f32>> {
-        self.quality().map(|_| self.film.relative_errors())
+        let method = &self.settings.method;
+        let tells = method.tells_error();
+        tells.then(|| Quality::of_pixels(&self.film, &self.convergence, method.pixels())).flatten()
     }
 
     /// What has to go with the film for a render that is gone on with.

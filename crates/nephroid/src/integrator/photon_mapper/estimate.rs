@@ -14,7 +14,7 @@ use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, 
 use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::medium::Profile;
-use crate::photon_map::{Bandwidth, NearestList, Query, gather};
+use crate::photon_map::{Bandwidth, NearestList, Query, gather_both};
 use crate::sampling::{Sampler, Sequence};
 use crate::shape::SurfacePoint;
 use crate::transport::{PixelSample, direct_light, survival};
@@ -343,13 +343,14 @@ impl<'a> PhotonMapper<'a> {
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
         let bandwidth = bandwidth.at_least(vertex.footprint * self.maps.blur.factor(2));
         let Tools { neighbors, probe, .. } = tools;
-        let gathered = gather(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weight| {
-            let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
-            let radiance = f * photon.power * weight;
-            let is_direct = has_direct && photon.depth == 1 && !self.world.is_medium_light(photon.light);
-            *(if is_direct { &mut direct } else { &mut other }) += radiance;
-            probe.photon(photon, is_direct, radiance);
-        });
+        let gathered =
+            gather_both(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weights| {
+                let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
+                let radiance = f * photon.power * weights.whole;
+                let is_direct = has_direct && photon.depth == 1 && !self.world.is_medium_light(photon.light);
+                *(if is_direct { &mut direct } else { &mut other }) += radiance;
+                probe.photon(photon, is_direct, radiance, f * photon.power * weights.half);
+            });
         probe.look_up(wanted, gathered);
         (direct, other)
     }
