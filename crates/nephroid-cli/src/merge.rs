@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use nephroid::film::Quality;
 use nephroid_formats::film_file::{FilmFile, FilmFileError, FilmHeader, FilmMerger, read_header};
 use serde_json::{Value, json};
 
@@ -44,9 +45,12 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
     }
     let layers = layers::develop(&job.layers, aovs.as_ref());
-    let quality = quality::of_film(&header.identity, &film, &header.convergence);
+    let pixels = quality::pixels_of(&header.identity);
+    let quality = pixels.and_then(|pixels| Quality::of(&film, &header.convergence, pixels));
     let wants_error = job.args().is_ok_and(|args| args.aovs.contains(&LayerFlag::Error));
-    let error = (wants_error && quality.is_some()).then(|| film.relative_errors());
+    let error = pixels
+        .filter(|_| wants_error)
+        .and_then(|pixels| Quality::of_pixels(&film, &header.convergence, pixels));
     let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
     if denoiser.is_some() && !job.keeps_guides() {
         messages.note(denoise::NO_GUIDES);

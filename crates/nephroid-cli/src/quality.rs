@@ -1,6 +1,6 @@
 //! What a picture states of its own error: when it is asked for, and how it is told.
 
-use nephroid::film::{Convergence, Film, Quality};
+use nephroid::film::{Convergence, Film, Pixels, Quality};
 use nephroid::integrator::Method;
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ pub const WHO_TELLS: &str = "ppm, path, volpath or ptracer";
 
 /// Refuses a method that cannot tell.
 pub fn check(method: &Method, flag: &str) -> Result<(), Failure> {
-    if method.tells_quality() {
+    if method.tells_error() {
         return Ok(());
     }
     Err(Failure::Usage(format!(
@@ -28,13 +28,17 @@ pub fn check(method: &Method, flag: &str) -> Result<(), Failure> {
 
 /// What a film states, if its method can tell and there is enough to tell from.
 pub fn of(method: &Method, film: &Film, convergence: &Convergence) -> Option<Quality> {
-    method.tells_quality().then(|| Quality::of(film, convergence)).flatten()
+    method.tells_error().then(|| Quality::of(film, convergence, method.pixels())).flatten()
 }
 
-/// What a film states by its identity, which names its method.
-pub fn of_film(identity: &[(String, String)], film: &Film, convergence: &Convergence) -> Option<Quality> {
-    let integrator = identity.iter().find(|(name, _)| name == "integrator").map(|(_, value)| value.as_str());
-    integrator.filter(|name| *name != "photonmapper").and_then(|_| Quality::of(film, convergence))
+/// How the pixels of a film err, by its identity, which names its method; none if that cannot tell its error.
+pub fn pixels_of(identity: &[(String, String)]) -> Option<Pixels> {
+    let integrator = identity.iter().find(|(name, _)| name == "integrator")?;
+    match integrator.1.as_str() {
+        "photonmapper" => None,
+        "path" | "volpath" => Some(Pixels::Apart),
+        _ => Some(Pixels::Together),
+    }
 }
 
 /// Whether a render that may end by its error is to be judged after so many steps. Nothing else than their number decides,
@@ -102,7 +106,7 @@ pub fn percent(part: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nephroid::integrator::{PathConfig, PhotonMapperConfig, PpmConfig};
+    use nephroid::integrator::{LightTracerConfig, PathConfig, PhotonMapperConfig, PpmConfig};
 
     fn quality(bias: f64) -> Quality {
         Quality { error: 0.047, interval: [0.042, 0.0501], noise: 0.044, bias, estimates: 9 }
@@ -133,6 +137,27 @@ mod tests {
         assert!((times(0.02505, &path) - 4.0).abs() < 1e-9);
         assert!((times(0.02505, &ppm) - 8.0).abs() < 1e-9);
         assert_eq!(times(1.0, &ppm), 1.0);
+    }
+
+    #[test]
+    fn films_are_judged_as_renders_are() {
+        let methods = [
+            Method::PhotonMapper(PhotonMapperConfig::default()),
+            Method::Ppm(PpmConfig::default()),
+            Method::Path(PathConfig::default()),
+            Method::Path(PathConfig { media: true, ..PathConfig::default() }),
+            Method::LightTracer(LightTracerConfig::default()),
+        ];
+        for method in methods {
+            let identity = [("integrator".to_owned(), method.name().to_owned())];
+            assert_eq!(
+                pixels_of(&identity),
+                method.tells_error().then(|| method.pixels()),
+                "{}",
+                method.name()
+            );
+        }
+        assert_eq!(pixels_of(&[]), None);
     }
 
     #[test]

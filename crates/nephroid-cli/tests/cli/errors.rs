@@ -71,13 +71,16 @@ fn parts_state_together_what_the_whole_does() {
     };
     part("0..5", "0.film");
     part("5..12", "1.film");
-    let merged = dir.run(&["merge", "1.film", "0.film", "-o", "m.exr", "-o", "m.film", "--json"]).ends_with(0);
+    let merged =
+        dir.run(&["merge", "1.film", "0.film", "-o", "m.exr", "-o", "m.film", "--json"]).ends_with(0);
     let whole =
         path(&dir, &["--passes", "12", "--aov", "error,depth", "-o", "w.exr", "-o", "w.film"]).ends_with(0);
     dir.are_the_same("w", "m");
     let (merged, whole) = (merged.json()["quality"].clone(), whole.json()["quality"].clone());
-    // A part's first step follows upon none, so how much the error scatters is known from fewer.
-    assert_eq!((&merged["error"], &merged["estimates"]), (&whole["error"], &whole["estimates"]));
+    // A part's first step follows upon none, so less is known of how the steps hang together.
+    assert_eq!(merged["estimates"], whole["estimates"]);
+    let ratio = merged["error"].as_f64().unwrap() / whole["error"].as_f64().unwrap();
+    assert!((0.7..1.4).contains(&ratio), "{ratio}");
     let steps = |film: &str| read_header(&dir.path(film)).unwrap().convergence.steps();
     assert_eq!((steps("w.film"), steps("m.film")), (11, 10));
 }
@@ -108,7 +111,8 @@ fn what_makes_no_sense_is_refused() {
         dir.run(&[&["render", "a.xml"], args].concat()).ends_with(2).says(message);
         assert!(dir.files().is_empty());
     };
-    let who = "photonmapper cannot tell its error, which is mostly blur; render with ppm, path, volpath or ptracer";
+    let who =
+        "photonmapper cannot tell its error, which is mostly blur; render with ppm, path, volpath or ptracer";
     refused(&["--target-error", "5"], &format!("error: --target-error: {who}: see --integrator\n"));
     refused(&["--aov", "error", "-o", "x.exr"], &format!("error: --aov error: {who}: see --integrator\n"));
     for bad in ["0", "-1%", "five"] {
@@ -117,6 +121,12 @@ fn what_makes_no_sense_is_refused() {
     }
     let path = ["--integrator", "path", "--target-error", "5"];
     let part = ["--pass-range", "0..1", "-o", "x.film"];
-    refused(&[path, part].concat(), "error: --pass-range: a part of a render does not know the error of the whole");
-    refused(&["--integrator", "path", "--aov", "error", "-o", "x.png"], "error: --aov: layers are written to");
+    refused(
+        &[path, part].concat(),
+        "error: --pass-range: a part of a render does not know the error of the whole",
+    );
+    refused(
+        &["--integrator", "path", "--aov", "error", "-o", "x.png"],
+        "error: --aov: layers are written to",
+    );
 }
