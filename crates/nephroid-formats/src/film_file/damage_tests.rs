@@ -177,16 +177,16 @@ fn units_that_no_film_has_are_refused() {
 #[test]
 fn other_versions_are_refused() {
     let mut bytes = bytes_of(&small());
-    bytes[8] = 3;
+    bytes[8] = 4;
     assert_eq!(
         message(&bytes),
-        "has version 3 of the format, but this program reads up to 2: use the program that wrote it, or a \
+        "has version 4 of the format, but this program reads up to 3: use the program that wrote it, or a \
          newer one"
     );
-    bytes[8] = 1;
+    bytes[8] = 2;
     assert_eq!(
         message(&bytes),
-        "has version 1 of the format, but this program reads from 2 on: use the program that wrote it, or \
+        "has version 2 of the format, but this program reads from 3 on: use the program that wrote it, or \
          render again"
     );
 }

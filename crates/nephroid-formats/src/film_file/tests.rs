@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
-use nephroid::film::{Aov, AovFilm, AovSample, AovSum, Film, FilmCounts, PixelSum, PixelTotal};
+use nephroid::film::{Aov, AovFilm, AovSample, AovSum, Convergence, Film, FilmCounts, PixelSum, PixelTotal};
 use serde_json::json;
 
 use super::*;
@@ -28,6 +28,7 @@ pub fn pass(film: &mut Film, aovs: Option<&mut AovFilm>, seed: u64) {
         let light = [unit(), unit(), unit()].map(|v| v * 10f32.powi((unit() * 12.0) as i32 - 6));
         let weight = if unit() < 0.2 { -1.25 } else { 1.25 };
         picture.add(light.into(), weight);
+        picture.add_blur(light[0] - light[1], weight);
         if unit() < 0.02 {
             picture.radiance[1] = if unit() < 0.5 { f64::NAN } else { -1e300 };
         }
@@ -55,8 +56,14 @@ pub fn film_of(passes: &[u64], with_aovs: bool) -> FilmFile {
         pass(&mut film, aovs.as_mut(), number);
         covered = covered.join(&Covered::from_range(4 * number..4 * number + 4)).unwrap();
     }
+    // Of each pass the same, so that they add up in any order.
+    let mut convergence = Convergence::default();
+    for _ in passes {
+        convergence.merge(&Convergence::from_numbers([3, 0, 1 << 60, 2, 7 << 30, 0, 0, 16, 5]));
+    }
     let pair = |what: &str, value: &str| (what.to_owned(), value.to_owned());
     let header = FilmHeader {
+        convergence,
         covered,
         samples_per_pass: 4,
         identity: vec![pair("scene", "00ff00ff00ff00ff"), pair("seed", "7")],
@@ -119,7 +126,10 @@ fn extreme_sums_come_back_and_take_96_bytes_a_pixel() {
     let header = FilmHeader { covered: Covered::from_range(0..u64::MAX), ..FilmHeader::default() };
     let plain = FilmFile { header: header.describing(&film, None), film, aovs: None };
     let bytes = bytes_of(&plain);
-    assert_eq!(read_film_bytes(&bytes).unwrap(), plain);
+    let read = read_film_bytes(&bytes).unwrap();
+    let marks = |file: &FilmFile| file.film.pixels().iter().map(|pixel| pixel.mark).collect::<Vec<_>>();
+    assert_eq!(read, plain);
+    assert_eq!(marks(&read), marks(&plain));
     // What comes on top: the header, and 17 bytes for each of four blocks.
     assert!(bytes.len() <= 96 * 64 * 64 + 512, "{}", bytes.len());
     let full = FilmFile {

@@ -61,7 +61,7 @@ impl PixelSum {
 /// The exact sums of one pixel over all iterations, in fixed point: see [`Film`](super::Film).
 ///
 /// The bits of each are as many as a file keeps, and sums end there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PixelTotal {
     /// Σ w·L per channel in 96 bits, in steps of 2^−48 units.
     pub radiance: [i128; 3],
@@ -76,9 +76,19 @@ pub struct PixelTotal {
     /// Σ (Σ w·D)² over iterations in 96 bits, in steps of 2^−40 units squared.
     pub blur_sq: u128,
     /// Σ w·Y in 96 bits, in steps of 2^−48 units, as it was when the film had a power of two of iterations for the last time:
-    /// see [`Convergence`](super::Convergence).
+    /// see [`Convergence`](super::Convergence). A note that depends on how a render was shared out, and so none of what is
+    /// compared.
     pub mark: i128,
 }
+
+impl PartialEq for PixelTotal {
+    fn eq(&self, other: &Self) -> bool {
+        let sums = |t: &Self| (t.radiance, t.luminance_sq, t.weight, t.samples, t.blur, t.blur_sq);
+        sums(self) == sums(other)
+    }
+}
+
+impl Eq for PixelTotal {}
 
 impl PixelTotal {
     /// Rounds one iteration's sums, each once, and counts how many had to be cut.

@@ -3,7 +3,7 @@
 use super::light::Lights;
 use super::{Convergence, Film};
 
-/// The fewest estimates of a pixel from which their spread is told.
+/// The fewest steps from which the spread of estimates is told, and how evenly they are spread.
 const FEWEST: u64 = 4;
 
 /// 90 % of a normal distribution lie within so many standard deviations.
@@ -68,7 +68,7 @@ impl Quality {
     /// [not for every method](crate::integrator::Method::tells_error). `None` if there are too few estimates, or no light.
     pub fn of(film: &Film, convergence: &Convergence, pixels: Pixels) -> Option<Self> {
         let estimates = film.pixels().iter().map(|pixel| u64::from(pixel.samples)).max()?;
-        if estimates < FEWEST {
+        if film.iterations().min(estimates) < FEWEST {
             return None;
         }
         let sums = Sums::of(film);
@@ -95,17 +95,30 @@ impl Quality {
     }
 }
 
+/// How much of the evenness that a render has shown so far is thought to go on.
+const GOES_ON: f64 = 0.5;
+
 /// What the even spread of samples leaves of the variance that they show, and the variance of its logarithm.
 ///
-/// If that of the mean of n falls as n^(−1−δ), of which the spread of the samples shows n^(−1), then halves of m compare as
-/// ρ = m^(−δ) (2 − 2^(−δ)) ≈ (m/2)^(−δ), and n^(−δ) is left. A ρ that is uncertain is drawn to 1.
+/// If that of the mean of n falls as n^(−1−δ), halves whose difference has the mean square ρ of the shown variance leave
+/// ρ/(2^(1+δ) − 1) of it, and further on n^(−δ). From the first estimate on the mean δ is about −ln ρ / ln(m/2) for halves of m; but
+/// what even samples take away is at last gone, and the δ of now is less. A ρ that is uncertain is drawn to 1.
 pub(super) fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) -> (f64, f64) {
     match convergence.ln_ratio() {
         Some((compared, ln_ratio)) if compared >= 8 => {
-            let lever = libm::log(estimates as f64) / libm::log(compared as f64 / 4.0);
+            let compared = compared as f64;
+            let of_delta = GOES_ON / libm::log(0.25 * compared);
+            let delta = -of_delta * ln_ratio.min(0.0);
+            let further = libm::log(estimates as f64 / compared).max(0.0);
+            let ln_left = ln_ratio.min(0.0) - libm::log(libm::exp2(1.0 + delta) - 1.0) - delta * further;
+            // The derivative by ln ρ, near 1.
+            let lever = 1.0 + of_delta * (2.0 * std::f64::consts::LN_2 + further);
             let of_ratio = scatter * lever * lever;
             let known = OF_EVENNESS / (OF_EVENNESS + of_ratio);
-            (libm::exp(known * (ln_ratio * lever).min(0.0)), known * of_ratio)
+            // Half of what is beyond the ratio is a guess, and a fifth of that.
+            let guess = 0.5 * (ln_ratio.min(0.0) - ln_left);
+            let guesses = guess * guess + 0.04 * ln_ratio.min(0.0) * ln_ratio.min(0.0);
+            (libm::exp(known * ln_left), known * (of_ratio + guesses))
         }
         _ => (1.0, OF_EVENNESS),
     }

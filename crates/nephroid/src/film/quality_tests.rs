@@ -155,15 +155,25 @@ fn bias_is_twice_what_half_of_the_blur_takes_away() {
     assert!((bias / expected - 1.0).abs() < 4.0 * 0.00625 / 0.05 / 8.0, "{bias} {expected}");
 }
 
-/// Halves of a render whose noise falls as n^(−1.4).
+/// Halves of a render whose noise falls as n^(−1.4). What is left lies between what is if that has come to its end, ρ, and
+/// what is if it goes on, n^(−.4).
 #[test]
 fn samples_that_are_spread_evenly_have_less_noise() {
     let (delta, compared) = (0.4, 64.0);
     let ln_ratio = -delta * libm::log(compared / 4.0);
-    let numbers = [0, 0, 0, 0, 0, 0, 0, compared as u64, ln_ratio.to_bits()];
-    let convergence = Convergence::from_numbers(numbers);
-    let sure = quality::evenness(&convergence, 100, 1e-9);
-    assert!((sure.0 / libm::pow(100.0, -delta) - 1.0).abs() < 1e-6 && sure.1 < 1e-8, "{sure:?}");
-    let unsure = quality::evenness(&convergence, 100, 1e9);
+    let convergence =
+        |ln_ratio: f64| Convergence::from_numbers([0, 0, 0, 0, 0, 0, 0, compared as u64, ln_ratio.to_bits()]);
+    let of = |ln_ratio, scatter| quality::evenness(&convergence(ln_ratio), 100, scatter);
+    let (left, variance) = of(ln_ratio, 1e-9);
+    // Either lies within two standard deviations.
+    let reach = 2.0 * libm::sqrt(variance);
+    assert!(
+        (libm::log(left) - ln_ratio).abs() < reach
+            && (libm::log(left) + delta * libm::log(100.0)).abs() < reach
+    );
+    assert!(libm::pow(100.0, -delta) < left && left < 0.9 * libm::exp(ln_ratio), "{left}");
+    // Halves that are independent, and some that are further apart by chance, leave all.
+    assert!([0.0, 0.1].iter().all(|&ln_ratio| of(ln_ratio, 1e-9).0 == 1.0));
+    let unsure = of(ln_ratio, 1e9);
     assert!((unsure.0 - 1.0).abs() < 1e-6 && (unsure.1 - 0.25).abs() < 1e-6, "{unsure:?}");
 }
