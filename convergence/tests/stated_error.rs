@@ -57,11 +57,11 @@ fn until(session: &mut Session<'_>, target: f64) {
     }
 }
 
-/// Renders of a method without bias that state no more than 2 %, for two seeds.
+/// Renders of a method without bias that state no more than 4 %, for two seeds.
 fn references(world: &World, method: &Method) -> [Vec<f64>; 2] {
     [1001, 1002].map(|seed| {
         let mut session = session(world, method.clone(), seed);
-        until(&mut session, 0.02);
+        until(&mut session, if is_long() { 0.015 } else { 0.04 });
         luminances(session.film())
     })
 }
@@ -130,7 +130,7 @@ fn even_light() {
 #[test]
 fn caustic() {
     let mut b = Builder::parallel_view(Vec3::new(0.0, 0.2, 0.0), Vec3::ZERO, 0.7, SIDE, SIDE);
-    b.white_floor(3.0);
+    b.white_floor(0.8);
     let glass = b.glass(1.5);
     b.sphere(Vec3::new(0.1, 0.8, 0.0), 0.4, glass);
     b.point_light(Vec3::new(0.3, 3.0, 0.2), 10.0);

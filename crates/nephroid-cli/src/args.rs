@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use nephroid::film::{Aov, ImageError, ToneMap};
+use nephroid::film::{ImageError, ToneMap};
 
+use crate::denoise::DenoiseArgs;
 use crate::lab_args::{InspectArgs, PhotonsArgs};
-use crate::layers;
+use crate::layers::{self, LayerFlag};
 use crate::method::Integrator;
 use crate::parameters::PhotonFlags;
 use crate::session_args::{MergeArgs, ResumeArgs, SessionArgs, WatchArgs};
@@ -104,9 +105,9 @@ pub struct RenderArgs {
     #[arg(long)]
     pub json: bool,
     /// Further layers of .exr files: direct, global, caustic, emitted, medium, albedo, normal, depth,
-    /// position, geo_normal, uv, radius, count
+    /// position, geo_normal, uv, radius, count, error
     #[arg(long = "aov", value_name = "NAME,…", value_delimiter = ',', value_parser = layers::parse)]
-    pub aovs: Vec<Aov>,
+    pub aovs: Vec<LayerFlag>,
     #[command(flatten)]
     pub limits: LimitArgs,
     #[command(flatten)]
@@ -115,6 +116,8 @@ pub struct RenderArgs {
     pub watch: WatchArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
     #[command(flatten)]
     pub photons: PhotonFlags,
 }
@@ -132,6 +135,10 @@ pub struct LimitArgs {
     /// Seconds, from the start of rendering
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
+    /// The error of the picture that it states itself, with a probability of 95 % and as 5% or 5; ppm, path, volpath and
+    /// ptracer tell it
+    #[arg(long, value_name = "PERCENT", value_parser = percentage)]
+    pub target_error: Option<f64>,
 }
 
 /// How a PNG is made from radiance.
@@ -231,6 +238,12 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, "write a number of seconds above zero", |s| s > 0.0 && s < 1e9)
 }
 
+/// A part of one, in per cent.
+pub fn percentage(text: &str) -> Result<f64, String> {
+    let digits = text.strip_suffix('%').unwrap_or(text).trim_end();
+    number(digits, "write a percentage above zero, as in 5%", |p| p > 0.0 && p.is_finite()).map(|p| p / 100.0)
+}
+
 fn epsilon(text: &str) -> Result<f64, String> {
     number(text, "write a number that is not negative", |e| e >= 0.0 && e.is_finite())
 }
@@ -260,6 +273,16 @@ mod tests {
         assert!(args.photons.has("photons") && args.session.pass_range.is_some());
         assert_eq!(args.outputs, [PathBuf::from("a.film")]);
         assert!(of_render(&words("scenes")).is_err());
+    }
+
+    #[test]
+    fn percentages_have_a_sign_or_none() {
+        for (text, part) in [("5%", 0.05), ("5", 0.05), ("12.5 %", 0.125), ("0.1", 0.001), ("250%", 2.5)] {
+            assert_eq!(percentage(text), Ok(part), "{text}");
+        }
+        for bad in ["", "%", "0", "0%", "-5%", "5%%", "5 percent", "nan", "inf%", "5,5"] {
+            assert_eq!(percentage(bad), Err("write a percentage above zero, as in 5%".to_owned()), "{bad}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use nephroid::film::{AovFilm, Film};
+use nephroid::film::{AovFilm, Convergence, Film};
 use nephroid_formats::film_file::{
     Covered, FilmFile, FilmHeader, identity_differences, read_film, read_header, write_film,
 };
@@ -21,6 +21,8 @@ pub struct Begun {
     pub film: Film,
     /// Those of its layers.
     pub aovs: Option<AovFilm>,
+    /// How it came together, which its error is told by.
+    pub convergence: Convergence,
     /// Numbers of the samples of each pixel that are in it.
     pub covered: Range<u64>,
     /// What it is of.
@@ -32,7 +34,7 @@ pub struct Begun {
 /// Writes a film whole or not at all. `covered` are the numbers of the samples of each pixel that are in it.
 pub fn write(
     path: &Path,
-    (film, aovs): (&Film, Option<&AovFilm>),
+    (film, aovs, convergence): (&Film, Option<&AovFilm>, Convergence),
     covered: Covered,
     identity: &Identity,
     job: &Job,
@@ -42,6 +44,7 @@ pub fn write(
         samples_per_pass: job.plan.camera.samples_per_pixel,
         identity: identity.clone(),
         job: job.to_json(),
+        convergence,
         ..FilmHeader::default()
     };
     write_film(path, &header, film, aovs).map_err(|e| e.to_string())
@@ -65,7 +68,8 @@ pub fn read_to_go_on(path: &Path) -> Result<Begun, Failure> {
             )));
         }
     };
-    Ok(Begun { path: path.to_owned(), film, aovs, covered, identity: header.identity, job })
+    let convergence = header.convergence;
+    Ok(Begun { path: path.to_owned(), film, aovs, convergence, covered, identity: header.identity, job })
 }
 
 /// The job of a film's header, which must fit the rest.

@@ -56,7 +56,7 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
         )));
     }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
-    let limits = LimitArgs { spp: args.spp, passes: args.passes, time: None };
+    let limits = LimitArgs { spp: args.spp, passes: args.passes, ..LimitArgs::default() };
     let plan = Plan::new(&limits, file.sample_count);
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.run.seed };
     let window = file.scene.film.window();

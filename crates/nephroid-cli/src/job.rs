@@ -8,6 +8,7 @@ use nephroid::session::RenderPlan;
 use serde_json::{Value, json};
 
 use crate::args::{self, RenderArgs};
+use crate::denoise::GUIDES;
 use crate::exit::Failure;
 use crate::layers::LayerPlan;
 use crate::load;
@@ -151,6 +152,7 @@ impl Job {
             }),
             (_, given) => given,
         };
+        args.denoise.oidn_library = args.denoise.oidn_library.map(|library| from_here(&library));
         args.watch = Default::default();
         Ok(args)
     }
@@ -159,6 +161,11 @@ impl Job {
     pub fn named_from_here(&self, path: &Path) -> PathBuf {
         let here = std::env::current_dir().is_ok_and(|here| here == self.folder);
         if here { path.to_owned() } else { self.folder.join(path) }
+    }
+
+    /// Whether its films keep what pictures are denoised with.
+    pub fn keeps_guides(&self) -> bool {
+        GUIDES.iter().all(|aov| self.layers.iter().any(|layer| layer.aov == *aov))
     }
 
     /// What this process would be told for the same render.
@@ -186,6 +193,7 @@ mod tests {
                 samples: None,
                 passes: Some(9),
                 seconds: Some(1.5),
+                target_error: Some(0.05),
                 range: Some(PassRange { begin: 2, end: 5 }),
             },
             layers: vec![layer("depth", Aov::Depth), layer("my albedo", Aov::Albedo)],
@@ -200,6 +208,7 @@ mod tests {
             let text = job.to_json().to_string();
             assert_eq!(Job::from_json(&serde_json::from_str(&text).unwrap()), Some(job.clone()));
             (job.scene, job.limits.range, job.limits.seconds) = (None, None, None);
+            job.limits.target_error = None;
         }
     }
 

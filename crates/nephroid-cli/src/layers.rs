@@ -6,8 +6,10 @@ use nephroid_formats::image::{Layer, LayerData};
 use nephroid_formats::mitsuba::AovLayer;
 
 use crate::console::Messages;
+use crate::denoise::{GUIDES, NOISY};
 use crate::exit::Failure;
 use crate::lab_args::unknown;
+use crate::quality;
 
 /// A layer to write.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +22,18 @@ pub struct LayerPlan {
     pub channels: &'static [&'static str],
 }
 
+/// A value of `--aov`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayerFlag {
+    /// One that a render keeps.
+    Kept(Aov),
+    /// The error that each pixel is expected to have, which its sums tell.
+    Error,
+}
+
+/// The layer of [`LayerFlag::Error`].
+pub const ERROR: &str = "error";
+
 /// A layer with its values.
 #[derive(Clone, Debug)]
 pub struct DevelopedLayer {
@@ -28,6 +42,11 @@ pub struct DevelopedLayer {
 }
 
 impl LayerPlan {
+    /// One with the value's own name.
+    fn of(aov: Aov) -> Self {
+        Self { name: aov.name().to_owned(), aov, channels: aov.channels() }
+    }
+
     /// What it is called.
     pub fn name(&self) -> &str {
         &self.name
@@ -35,34 +54,42 @@ impl LayerPlan {
 }
 
 /// The value of a name on the command line.
-pub fn parse(name: &str) -> Result<Aov, String> {
-    Aov::parse(name)
-        .ok_or_else(|| unknown(name, "there is no such value: it must be", &Aov::ALL.map(Aov::name)))
+pub fn parse(name: &str) -> Result<LayerFlag, String> {
+    if name == ERROR {
+        return Ok(LayerFlag::Error);
+    }
+    let names: Vec<&str> = Aov::ALL.into_iter().map(Aov::name).chain([ERROR]).collect();
+    let kept = Aov::parse(name).map(LayerFlag::Kept);
+    kept.ok_or_else(|| unknown(name, "there is no such value: it must be", &names))
 }
 
-/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names. None if no file
-/// `keeps_layers`.
+/// Settles the layers: those of `--aov`, and those of the scene's `aov` integrator that have other names, which no file
+/// has unless it `keeps_layers`; and those that a picture is denoised with.
 pub fn choose(
-    flags: &[Aov],
+    flags: &[LayerFlag],
     of_scene: &[AovLayer],
     method: &Method,
-    keeps_layers: bool,
+    (keeps_layers, denoises): (bool, bool),
     messages: &mut Messages,
 ) -> Result<Vec<LayerPlan>, Failure> {
     let mut layers: Vec<LayerPlan> = Vec::new();
-    for aov in flags {
+    for flag in flags {
+        let LayerFlag::Kept(aov) = flag else {
+            quality::check(method, "--aov error")?;
+            continue;
+        };
         if let Some(reason) = lacks(method, *aov) {
             let name = aov.name();
             return Err(Failure::Usage(format!(
                 "--aov {name}: the integrator {reason}, so it has no {name}"
             )));
         }
-        let plan = LayerPlan { name: aov.name().to_owned(), aov: *aov, channels: aov.channels() };
+        let plan = LayerPlan::of(*aov);
         if !layers.contains(&plan) {
             layers.push(plan);
         }
     }
-    if !layers.is_empty() && !keeps_layers {
+    if !flags.is_empty() && !keeps_layers {
         let message = "--aov: layers are written to OpenEXR and film files only; name one with -o FILE.exr";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -80,7 +107,36 @@ pub fn choose(
         messages.warning("the layers that the scene asks for are left out: no OpenEXR file is written");
         layers.clear();
     }
+    if flags.contains(&LayerFlag::Error) && layers.iter().any(|layer| layer.name == ERROR) {
+        return Err(Failure::Usage(
+            "--aov error: the scene has a layer of that name, which is something else".to_owned(),
+        ));
+    }
+    if denoises {
+        add_guides(&mut layers)?;
+    }
     Ok(layers)
+}
+
+/// Adds what a denoiser asks for and is not there.
+fn add_guides(layers: &mut Vec<LayerPlan>) -> Result<(), Failure> {
+    let missing: Vec<Aov> =
+        GUIDES.into_iter().filter(|aov| layers.iter().all(|layer| layer.aov != *aov)).collect();
+    let names = missing.iter().map(|aov| aov.name()).chain([NOISY]);
+    if let Some(taken) = names.into_iter().find(|name| layers.iter().any(|layer| layer.name == *name)) {
+        return Err(Failure::Usage(format!(
+            "--denoise: has a layer \"{taken}\" of its own, and the scene's of that name is something else"
+        )));
+    }
+    layers.extend(missing.into_iter().map(|aov| LayerPlan::of(aov)));
+    Ok(())
+}
+
+/// A value for each pixel, its channels one behind the other; none if no layer has it.
+pub fn values(layers: &[DevelopedLayer], aov: Aov) -> Option<Vec<f32>> {
+    let channels = &layers.iter().find(|layer| layer.plan.aov == aov)?.image.channels;
+    let pixels = channels.first().map_or(0, Vec::len);
+    Some((0..pixels).flat_map(|i| channels.iter().map(move |channel| channel[i])).collect())
 }
 
 /// Why an integrator has no such value, its name first.
@@ -106,9 +162,9 @@ pub fn develop(layers: &[LayerPlan], film: Option<&AovFilm>) -> Vec<DevelopedLay
     layers.iter().filter_map(develop).collect()
 }
 
-/// Calls `write` with the layers as they are written, behind `first`.
+/// Calls `write` with the layers as they are written, behind the `first` ones.
 pub fn with_layers<T>(
-    first: Layer<'_>,
+    first: Vec<Layer<'_>>,
     layers: &[DevelopedLayer],
     write: impl FnOnce(&[Layer<'_>]) -> T,
 ) -> T {
@@ -116,7 +172,7 @@ pub fn with_layers<T>(
         .iter()
         .map(|l| l.plan.channels.iter().copied().zip(l.image.channels.iter().map(Vec::as_slice)).collect())
         .collect();
-    let mut all = vec![first];
+    let mut all = first;
     all.extend(layers.iter().zip(&channels).map(|(layer, channels)| {
         let (width, height) = (layer.image.width, layer.image.height);
         Layer { name: &layer.plan.name, data: LayerData::Channels { width, height, channels } }

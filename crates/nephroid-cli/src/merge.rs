@@ -3,22 +3,26 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use nephroid::film::Quality;
 use nephroid_formats::film_file::{FilmFile, FilmFileError, FilmHeader, FilmMerger, read_header};
 use serde_json::{Value, json};
 
 use crate::console::{self, Messages};
+use crate::denoise::{self, Denoised};
 use crate::exit::{Exit, Failure};
 use crate::films;
 use crate::job::{self, Job};
-use crate::layers;
+use crate::layers::{self, LayerFlag};
 use crate::noise;
 use crate::output::{self, Kind, Output, Picture};
+use crate::quality;
 use crate::session_args::MergeArgs;
 
 /// Adds films up.
 pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
     let mut messages = Messages::new(args.quiet);
     let outputs = output::outputs(&args.outputs)?;
+    let denoiser = denoise::prepare(&args.denoise, &outputs, None)?;
     let FilmFile { header, film, aovs } = sum(&args.parts)?;
     let job = job_of_the_sum(&args.parts, &header, &outputs)?;
     let missing = missing(&header, &job);
@@ -41,10 +45,27 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
     }
     let layers = layers::develop(&job.layers, aovs.as_ref());
-    let picture = Picture { image: film.develop(), layers };
-    let (outputs, trouble) = output::write_all(outputs, &picture, &args.display, &|path| {
-        films::write(path, (&film, aovs.as_ref()), header.covered.clone(), &header.identity, &job)
+    let pixels = quality::pixels_of(&header.identity);
+    let quality = pixels.and_then(|pixels| Quality::of(&film, &header.convergence, pixels));
+    let wants_error = job.args().is_ok_and(|args| args.aovs.contains(&LayerFlag::Error));
+    let error = pixels
+        .filter(|_| wants_error)
+        .and_then(|pixels| Quality::of_pixels(&film, &header.convergence, pixels));
+    let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
+    if denoiser.is_some() && !job.keeps_guides() {
+        messages.note(denoise::NO_GUIDES);
+    }
+    let (denoised, trouble) = denoise::try_to(denoiser.as_ref(), &mut picture);
+    let (outputs, more) = output::write_all(outputs, &picture, &args.display, &|path| {
+        films::write(
+            path,
+            (&film, aovs.as_ref(), header.convergence),
+            header.covered.clone(),
+            &header.identity,
+            &job,
+        )
     });
+    let trouble: Vec<String> = trouble.into_iter().chain(more).collect();
     messages.errors(&trouble);
     let noise = noise::noise(&film);
     if args.json {
@@ -60,21 +81,30 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
             "samples_per_pass": header.samples_per_pass,
             "samples_per_pixel": header.covered.total(),
             "noise": noise,
+            "quality": quality.as_ref().map(quality::json),
             "mean_luminance": film.mean_luminance(),
+            "denoised": denoised.as_ref().map(Denoised::json),
             "outputs": outputs,
             "messages": messages.list.into_iter().map(Value::from).collect::<Vec<_>>(),
         });
         console::result(&format!("{object}\n"))?;
     } else if !args.quiet {
-        let noise = noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
+        let good = match (&quality, noise) {
+            (Some(quality), _) => format!(", {}", quality::text(quality)),
+            (None, Some(noise)) => format!(", noise {}", noise::percent(noise)),
+            (None, None) => String::new(),
+        };
         console::say(&format!(
-            "{} by {} pixels, {} samples each, {} of {} films{noise}",
+            "{} by {} pixels, {} samples each, {} of {} films{good}",
             film.width(),
             film.height(),
             header.covered.total(),
             films::passes(header.covered.ranges(), header.samples_per_pass),
             args.parts.len(),
         ));
+        if let Some(denoised) = &denoised {
+            console::say(&format!("denoised: {}", denoised.text()));
+        }
     }
     Failure::of_files(trouble).map_or(Ok(Exit::Done), Err)
 }

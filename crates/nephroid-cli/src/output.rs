@@ -7,8 +7,9 @@ use nephroid::texture::Image;
 use nephroid_formats::image::{Layer, LayerData, check_writable, read_image, write_exr, write_png};
 
 use crate::args::DisplayArgs;
+use crate::denoise::NOISY;
 use crate::exit::Failure;
-use crate::layers::{DevelopedLayer, with_layers};
+use crate::layers::{DevelopedLayer, ERROR, with_layers};
 
 /// What a picture can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +68,14 @@ impl Output {
     ) -> Result<(), String> {
         match self.kind {
             Kind::Exr => {
-                let first = Layer { name: "", data: LayerData::Rgb(&picture.image) };
+                let rgb = |name, image| Layer { name, data: LayerData::Rgb(image) };
+                let noisy = picture.noisy.as_ref().map(|noisy| rgb(NOISY, noisy));
+                let (width, height) = (picture.image.width, picture.image.height);
+                let error = picture
+                    .error
+                    .as_ref()
+                    .map(|values| Layer { name: ERROR, data: LayerData::Grey { width, height, values } });
+                let first = [rgb("", &picture.image)].into_iter().chain(noisy).chain(error).collect();
                 with_layers(first, &picture.layers, |all| write_exr(&self.path, all))
                     .map_err(|e| e.to_string())
             }
@@ -129,8 +137,12 @@ fn place(path: &Path) -> PathBuf {
 
 /// A picture with its further layers.
 pub struct Picture {
-    /// Radiance.
+    /// Radiance, denoised if that was asked for.
     pub image: Image,
+    /// What it was before.
+    pub noisy: Option<Image>,
+    /// The relative error that each pixel of that is expected to have.
+    pub error: Option<Vec<f32>>,
     /// What is written where layers fit.
     pub layers: Vec<DevelopedLayer>,
 }

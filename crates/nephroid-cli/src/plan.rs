@@ -20,8 +20,21 @@ pub struct Plan {
     pub passes: Option<u64>,
     /// Seconds after which to stop.
     pub seconds: Option<f64>,
+    /// The error that is small enough, as a part of one.
+    pub target_error: Option<f64>,
     /// The passes to render, if not all of them.
     pub range: Option<PassRange>,
+}
+
+/// How far a render is that is gone on with.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Done {
+    /// Samples of each pixel in a pass.
+    pub samples_per_pass: u32,
+    /// The number of its next sample of each pixel.
+    pub samples: u64,
+    /// What its error is less than, if it can tell.
+    pub error: Option<f64>,
 }
 
 impl Plan {
@@ -36,13 +49,14 @@ impl Plan {
             (Some(spp), None) => spp,
             (None, _) => of_scene,
         };
-        let unlimited = limits.passes.is_none() && limits.time.is_none();
+        let unlimited = limits.passes.is_none() && limits.time.is_none() && limits.target_error.is_none();
         let samples = limits.spp.or(unlimited.then_some(of_scene));
         Self {
             samples_per_pass,
             samples: samples.map(u64::from),
             passes: limits.passes,
             seconds: limits.time,
+            target_error: limits.target_error,
             range: None,
         }
     }
@@ -57,6 +71,12 @@ impl Plan {
     ) -> Result<Self, Failure> {
         let Some(range) = range else { return Ok(self) };
         let refuse = |message: String| Err(Failure::Usage(format!("--pass-range: {message}")));
+        if limits.target_error.is_some() {
+            return refuse(
+                "a part of a render does not know the error of the whole: leave out --target-error"
+                    .to_owned(),
+            );
+        }
         match (limits.spp, limits.passes) {
             (Some(_), _) if progressive => {
                 refuse("ppm decides how many samples a pass has: give --passes, without --spp".to_owned())
@@ -76,32 +96,37 @@ impl Plan {
     }
 
     /// Goes on with what was interrupted after `spent` seconds: with other limits where they are given. Those of counts
-    /// replace all others; time counts anew. What was `done` has so many samples a pass, and ends before that sample; where
-    /// that is all there was to do, time alone means more than that.
-    pub fn resumed(
-        self,
-        limits: &LimitArgs,
-        spent: f64,
-        (per_pass, done): (u32, u64),
-    ) -> Result<Self, Failure> {
+    /// replace all others; time counts anew, and with another error that of before counts no more. Where what was
+    /// [`Done`] is all there was to do, time or an error alone mean more than that.
+    pub fn resumed(self, limits: &LimitArgs, spent: f64, done: &Done) -> Result<Self, Failure> {
         let counts = limits.spp.is_some() || limits.passes.is_some();
-        if let (true, Some(range)) = (counts, self.range) {
+        if let (true, Some(range)) = (counts || limits.target_error.is_some(), self.range) {
             return Err(Failure::Usage(format!(
-                "this is a part of a render, passes {} to {}: --passes and --spp cannot change that",
+                "this is a part of a render, passes {} to {}: --passes, --spp and --target-error cannot change that",
                 range.begin,
                 range.end - 1
             )));
         }
         let mut plan = self;
         if counts {
-            (plan.samples, plan.passes, plan.seconds) = (limits.spp.map(u64::from), limits.passes, None);
+            (plan.samples, plan.passes) = (limits.spp.map(u64::from), limits.passes);
+            (plan.seconds, plan.target_error) = (None, None);
         }
-        if let Some(seconds) = limits.time {
-            plan.seconds = Some(spent + seconds);
-            if !counts && plan.range.is_none() && plan.end(per_pass).is_some_and(|end| done >= end) {
+        let further = limits.time.is_some() || limits.target_error.is_some();
+        if further && !counts {
+            plan.seconds = None;
+            if plan.range.is_none() && plan.end(done.samples_per_pass).is_some_and(|end| done.samples >= end)
+            {
                 (plan.samples, plan.passes) = (None, None);
             }
+            if let (Some(target), Some(error)) = (plan.target_error, done.error)
+                && error <= target
+            {
+                plan.target_error = None;
+            }
         }
+        plan.seconds = limits.time.map(|seconds| spent + seconds).or(plan.seconds);
+        plan.target_error = limits.target_error.or(plan.target_error);
         Ok(plan)
     }
 
@@ -133,6 +158,7 @@ impl Plan {
             "samples_per_pixel": self.samples,
             "passes": self.passes,
             "seconds": self.seconds,
+            "target_error": self.target_error,
             "pass_range": self.range.map(|range| [range.begin, range.end]),
         })
     }
@@ -143,14 +169,16 @@ impl Plan {
             Value::Null => Some(None),
             number => number.as_u64().map(Some),
         };
+        let positive = |name: &str| match &value[name] {
+            Value::Null => Some(None),
+            number => Some(Some(number.as_f64().filter(|s| (0.0..1e12).contains(s))?)),
+        };
         Some(Self {
             samples_per_pass: u32::try_from(value["samples_per_pass"].as_u64()?).ok()?,
             samples: count("samples_per_pixel")?,
             passes: count("passes")?,
-            seconds: match &value["seconds"] {
-                Value::Null => None,
-                seconds => Some(seconds.as_f64().filter(|s| (0.0..1e12).contains(s))?),
-            },
+            seconds: positive("seconds")?,
+            target_error: positive("target_error")?,
             range: match &value["pass_range"] {
                 Value::Null => None,
                 range => {
@@ -167,7 +195,7 @@ mod tests {
     use super::*;
 
     fn plan(spp: Option<u32>, passes: Option<u64>, time: Option<f64>) -> (u32, Option<u64>) {
-        let plan = Plan::new(&LimitArgs { spp, passes, time }, Some(16));
+        let plan = Plan::new(&LimitArgs { spp, passes, time, ..LimitArgs::default() }, Some(16));
         (plan.samples_per_pass, plan.end(plan.samples_per_pass))
     }
 
@@ -191,7 +219,7 @@ mod tests {
     #[test]
     fn a_part_is_one_of_the_whole() {
         let part_of = |progressive: bool, spp, passes, range: (u64, u64)| {
-            let limits = LimitArgs { spp, passes, time: None };
+            let limits = LimitArgs { spp, passes, ..LimitArgs::default() };
             let range = Some(PassRange { begin: range.0, end: range.1 });
             Plan::new(&limits, Some(16)).part(&limits, range, progressive).ok().map(|plan| {
                 let n = plan.samples_per_pass;
@@ -219,9 +247,11 @@ mod tests {
 
     #[test]
     fn new_limits_replace_old_ones() {
-        let old = Plan::new(&LimitArgs { spp: None, passes: Some(4), time: Some(10.0) }, Some(16));
+        let limits = |spp, passes, time| LimitArgs { spp, passes, time, target_error: None };
+        let old = Plan::new(&limits(None, Some(4), Some(10.0)), Some(16));
+        let done = |samples| Done { samples_per_pass: 16, samples, error: None };
         let resumed = |spp, passes, time| {
-            let plan = old.resumed(&LimitArgs { spp, passes, time }, 7.0, (16, 40)).unwrap();
+            let plan = old.resumed(&limits(spp, passes, time), 7.0, &done(40)).unwrap();
             (plan.samples, plan.passes, plan.seconds)
         };
         assert_eq!(resumed(None, None, None), (None, Some(4), Some(10.0)));
@@ -230,20 +260,52 @@ mod tests {
         assert_eq!(resumed(Some(100), None, Some(1.0)), (Some(100), None, Some(8.0)));
         let part = Plan { range: Some(PassRange { begin: 0, end: 2 }), ..old };
         let nine = LimitArgs { passes: Some(9), ..LimitArgs::default() };
-        assert!(part.resumed(&nine, 0.0, (16, 0)).is_err());
+        assert!(part.resumed(&nine, 0.0, &done(0)).is_err());
     }
 
     #[test]
     fn time_alone_goes_beyond_the_end_of_what_is_done() {
-        let limits = |passes, time| LimitArgs { spp: None, passes, time };
+        let limits = |passes, time| LimitArgs { passes, time, ..LimitArgs::default() };
         let old = Plan::new(&limits(Some(4), None), Some(16));
         let end = |plan: Plan, done| {
-            let plan = plan.resumed(&limits(None, Some(5.0)), 7.0, (16, done)).unwrap();
+            let plan = plan
+                .resumed(
+                    &limits(None, Some(5.0)),
+                    7.0,
+                    &Done { samples_per_pass: 16, samples: done, error: None },
+                )
+                .unwrap();
             assert_eq!(plan.seconds, Some(12.0));
             plan.end(16)
         };
         assert_eq!((end(old, 63), end(old, 64)), (Some(64), None));
         let part = Plan { range: Some(PassRange { begin: 0, end: 2 }), ..old };
         assert_eq!(end(part, 32), Some(32));
+    }
+
+    #[test]
+    fn a_smaller_error_takes_as_long_as_it_takes() {
+        let limits = |passes, time, target_error| LimitArgs { spp: None, passes, time, target_error };
+        let plan = Plan::new(&limits(None, None, Some(0.05)), Some(16));
+        assert_eq!((plan.end(16), plan.target_error), (None, Some(0.05)), "the scene's count is no limit");
+        let old = Plan::new(&limits(Some(4), Some(10.0), Some(0.05)), Some(16));
+        let resumed = |limits: LimitArgs, samples, error| {
+            let done = Done { samples_per_pass: 16, samples, error };
+            let plan = old.resumed(&limits, 7.0, &done).unwrap();
+            (plan.end(16), plan.seconds, plan.target_error)
+        };
+        assert_eq!(resumed(limits(None, None, None), 40, None), (Some(64), Some(10.0), Some(0.05)));
+        assert_eq!(resumed(limits(None, None, Some(0.01)), 40, None), (Some(64), None, Some(0.01)));
+        assert_eq!(resumed(limits(None, None, Some(0.01)), 64, None), (None, None, Some(0.01)));
+        assert_eq!(resumed(limits(Some(9), None, None), 64, None), (Some(144), None, None));
+        // Where the error is small enough already, time means more than that.
+        assert_eq!(
+            resumed(limits(None, Some(5.0), None), 40, Some(0.06)),
+            (Some(64), Some(12.0), Some(0.05))
+        );
+        assert_eq!(resumed(limits(None, Some(5.0), None), 40, Some(0.04)), (Some(64), Some(12.0), None));
+        let all = limits(None, None, Some(0.1));
+        let range = Some(PassRange { begin: 0, end: 2 });
+        assert!(Plan::new(&all, None).part(&all, range, false).is_err());
     }
 }

@@ -48,6 +48,8 @@ pub struct Watch {
     samples_before: AtomicU64,
     /// When the first photons or samples were begun.
     planned: Arc<OnceLock<Instant>>,
+    /// When the error will be small enough, if that is to end it.
+    good_enough: Arc<Mutex<Option<Instant>>>,
     now: Mutex<Now>,
 }
 
@@ -76,6 +78,7 @@ impl Watch {
             total_samples: AtomicU64::new(0),
             samples_before: AtomicU64::new(0),
             planned: Arc::default(),
+            good_enough: Arc::default(),
             now: Mutex::default(),
         }
     }
@@ -83,6 +86,12 @@ impl Watch {
     /// How many samples of all pixels together this run will take, if that is known.
     pub fn expect(&self, samples: Option<u64>) {
         self.total_samples.store(samples.unwrap_or(0), Ordering::Relaxed);
+    }
+
+    /// In how many seconds the error may be small enough.
+    pub fn expect_end(&self, seconds: f64) {
+        let left = Duration::from_secs_f64(seconds.clamp(0.0, 1e9));
+        *self.good_enough.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now().checked_add(left);
     }
 
     /// Whether anybody sees the display.
@@ -188,13 +197,16 @@ impl Watch {
         };
         let total = self.total_samples.load(Ordering::Relaxed);
         let (planned, limit, begun) = (Arc::clone(&self.planned), self.limit, self.begun);
+        let good_enough = Arc::clone(&self.good_enough);
         let left = move |state: &ProgressState, out: &mut dyn Write| {
             // Photons are part of a pass: the time of the samples so far counts them in.
             let since = planned.get().map_or(0.0, |since| since.elapsed().as_secs_f64());
             let by_samples = (phase == Phase::Camera && total > 0 && state.pos() > 0)
                 .then(|| since * (total.saturating_sub(state.pos())) as f64 / state.pos() as f64);
             let by_time = limit.map(|limit| limit.saturating_sub(begun.elapsed()).as_secs_f64());
-            let left = by_samples.into_iter().chain(by_time).reduce(f64::min);
+            let end = *good_enough.lock().unwrap_or_else(PoisonError::into_inner);
+            let by_error = end.map(|end| end.saturating_duration_since(Instant::now()).as_secs_f64());
+            let left = by_samples.into_iter().chain(by_time).chain(by_error).reduce(f64::min);
             // A line that cannot be formatted is not shown.
             let _ = match left {
                 Some(left) => write!(out, "{} left", HumanDuration(Duration::from_secs_f64(left.min(1e9)))),

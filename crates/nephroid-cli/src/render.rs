@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use nephroid::session::RenderSettings;
+use nephroid_denoise::Denoiser;
 use nephroid_formats::film_file::identity_differences;
 use nephroid_formats::image::{MAX_PIXELS, check_writable};
 use nephroid_formats::mitsuba::SceneFile;
@@ -14,16 +15,18 @@ use crate::args::{LimitArgs, RenderArgs};
 use crate::builtin;
 use crate::checkpoint::Checkpoint;
 use crate::console::{self, Messages};
+use crate::denoise::{self, Denoised};
 use crate::exit::{Exit, Failure};
 use crate::films::{self, Begun};
 use crate::identity;
 use crate::job::Order;
-use crate::layers;
+use crate::layers::{self, LayerFlag};
 use crate::load;
 use crate::method;
 use crate::output::{self, Kind, Output, Picture};
-use crate::plan::Plan;
+use crate::plan::{Done, Plan};
 use crate::preview::Previews;
+use crate::quality;
 use crate::rendering::{self, Companions, Ended, Rendered, Task};
 use crate::report::Report;
 
@@ -49,6 +52,7 @@ pub fn go(
     let scene = args.scene.as_deref().unwrap_or(Path::new(builtin::DEFAULT));
     let outputs = output::outputs(outputs)?;
     check_files(args, &outputs, resumed.is_some())?;
+    let denoiser = denoise::prepare(&args.denoise, &outputs, args.threads)?;
     let mut previews = Previews::new(&args.watch, &name(args).to_string_lossy(), &args.display)?;
     let clock = Instant::now();
     let (file, task) = prepare(args, scene, &outputs, resumed, &mut messages)?;
@@ -66,7 +70,7 @@ pub fn go(
         messages.diagnostic(remark);
     }
     let writing = Instant::now();
-    let (outputs, mut trouble) = write(&rendered, outputs, args);
+    let (outputs, denoised, mut trouble) = write(&rendered, outputs, args, denoiser.as_ref());
     trouble.extend(checkpoint.as_ref().and_then(|checkpoint| checkpoint.trouble().map(str::to_owned)));
     let report = Report {
         scene: &scene.display().to_string(),
@@ -74,6 +78,8 @@ pub fn go(
         plan: &plan,
         rendered: &rendered,
         outputs: &outputs,
+        denoised: denoised.as_ref(),
+        wants_error: args.aovs.contains(&LayerFlag::Error),
         checkpoint: checkpoint.as_ref(),
         reading,
         writing: writing.elapsed(),
@@ -108,11 +114,25 @@ fn prepare(
     resize(&mut file, args.resolution, messages)?;
     let checkpoint = args.session.checkpoint.as_deref();
     let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
-    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps_layers, messages)?;
+    // What a film keeps was decided when it was begun.
+    let denoises = match &resumed {
+        Some((begun, _)) => begun.job.keeps_guides(),
+        None => args.denoise.denoise,
+    };
+    let keeps = (keeps_layers, denoises);
+    let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps, messages)?;
+    if args.denoise.denoise && !denoises {
+        messages.note(denoise::NO_GUIDES);
+    }
     let plan = match &resumed {
         Some((begun, limits)) => {
-            let done = (begun.job.plan.camera.samples_per_pixel, begun.covered.end);
-            begun.job.limits.resumed(limits, begun.job.spent, done)?
+            let quality = quality::of(&method, &begun.film, &begun.convergence);
+            let done = Done {
+                samples_per_pass: begun.job.plan.camera.samples_per_pixel,
+                samples: begun.covered.end,
+                error: quality.map(|quality| quality.interval[1]),
+            };
+            begun.job.limits.resumed(limits, begun.job.spent, &done)?
         }
         None => {
             let progressive = method.is_progressive();
@@ -120,6 +140,9 @@ fn prepare(
             whole.part(&args.limits, args.session.pass_range, progressive)?
         }
     };
+    if plan.target_error.is_some() {
+        quality::check(&method, "--target-error")?;
+    }
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
     let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
     let begun = resumed.map(|(begun, _)| begun);
@@ -200,14 +223,23 @@ pub fn resize(
 }
 
 /// Writes what there is; nothing if not a single sample is, and no film if there are not the first of every pixel.
-/// Gives what was written, and why the rest could not be.
-fn write(rendered: &Rendered, mut outputs: Vec<Output>, args: &RenderArgs) -> (Vec<Output>, Vec<String>) {
+/// Gives what was written, by what it was denoised, and why the rest could not be.
+fn write(
+    rendered: &Rendered,
+    mut outputs: Vec<Output>,
+    args: &RenderArgs,
+    denoiser: Option<&Denoiser>,
+) -> (Vec<Output>, Option<Denoised>, Vec<String>) {
     if !rendered.has_picture() {
-        return (Vec::new(), Vec::new());
+        return (Vec::new(), None, Vec::new());
     }
     outputs.retain(|output| output.kind != Kind::Film || rendered.has_film());
     let (film, further) = &rendered.picture;
     let layers = layers::develop(&rendered.layers, further.as_ref());
-    let picture = Picture { image: film.develop(), layers };
-    output::write_all(outputs, &picture, &args.display, &|path| rendered.write_film(path))
+    let error = rendered.error_image.clone().filter(|_| args.aovs.contains(&LayerFlag::Error));
+    let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
+    let (denoised, trouble) = denoise::try_to(denoiser, &mut picture);
+    let (outputs, more) =
+        output::write_all(outputs, &picture, &args.display, &|path| rendered.write_film(path));
+    (outputs, denoised, trouble.into_iter().chain(more).collect())
 }

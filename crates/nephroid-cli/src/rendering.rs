@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use nephroid::film::{AovFilm, Film};
+use nephroid::film::{AovFilm, Convergence, Film, Quality};
 use nephroid::integrator::{LightTracerConfig, Method};
 use nephroid::session::{Place, RenderPlan, RenderSettings, Session, Statistics};
 use nephroid::world::World;
@@ -23,6 +23,7 @@ use crate::noise;
 use crate::plan::Plan;
 use crate::preview::Previews;
 use crate::progress::{self, PhaseTimes, Watch};
+use crate::quality;
 
 /// What is to be rendered.
 pub struct Task {
@@ -48,6 +49,12 @@ pub struct Rendered {
     pub picture: (Film, Option<AovFilm>),
     /// The sums of whole steps only, if there is more in the picture.
     whole: Option<(Film, Option<AovFilm>)>,
+    /// How the whole steps came together.
+    convergence: Convergence,
+    /// What the picture states of its error, by its whole steps.
+    pub quality: Option<Quality>,
+    /// That of each pixel, if there is one.
+    pub error_image: Option<Vec<f32>>,
     /// Numbers of the samples of each pixel that are in them.
     pub covered: Range<u64>,
     /// What the films are of.
@@ -89,6 +96,8 @@ pub struct Rendered {
 pub enum Ended {
     /// All passes or samples are done.
     Finished,
+    /// The error is small enough.
+    GoodEnough,
     /// The time is up.
     TimeIsUp,
     /// Ctrl-C.
@@ -126,7 +135,7 @@ impl Rendered {
         let job = self.job.as_ref().ok_or_else(|| format!("{}: nobody asked for a film", path.display()))?;
         let (film, aovs) = self.whole.as_ref().unwrap_or(&self.picture);
         let covered = Covered::from_range(self.covered.clone());
-        films::write(path, (film, aovs.as_ref()), covered, &self.identity, job)
+        films::write(path, (film, aovs.as_ref(), self.convergence), covered, &self.identity, job)
     }
 }
 
@@ -164,6 +173,7 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         watch,
         told: Instant::now(),
         telling: Duration::ZERO,
+        begun: None,
     };
     let ended = run.finish(companions);
     let covered = run.covered();
@@ -172,6 +182,9 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let torn = picture.0.iterations() != run.session.film().iterations();
     Ok(Rendered {
         noise: noise::noise(&picture.0),
+        convergence: *run.session.convergence(),
+        quality: run.session.quality(),
+        error_image: run.session.error_image(),
         whole: torn.then(|| (run.session.film().clone(), run.session.aovs().cloned())),
         picture,
         covered,
@@ -215,7 +228,8 @@ fn session<'w>(
     let session = Session::with_plan(world, settings, decided).with_aovs(&aovs).starting_at(place);
     let name = begun.path.display().to_string();
     let damaged = |error| Failure::File(format!("{name}: is not of this picture: {error}"));
-    session.with_films(begun.film, begun.aovs).map_err(damaged)
+    let session = session.with_films(begun.film, begun.aovs).map_err(damaged)?;
+    Ok(session.with_convergence(begun.convergence))
 }
 
 /// A render under way.
@@ -233,6 +247,8 @@ struct Run<'w> {
     /// When the noise was last told, and how long that took.
     told: Instant,
     telling: Duration,
+    /// When the first step began, and how many steps were done before.
+    begun: Option<(Instant, u64)>,
 }
 
 impl Run<'_> {
@@ -252,6 +268,9 @@ impl Run<'_> {
         let pixels = u64::from(window.width()) * u64::from(window.height());
         self.watch.expect(end.map(|end| (end - self.sample()).saturating_mul(pixels)));
         loop {
+            if self.is_good_enough() {
+                return Ended::GoodEnough;
+            }
             // What went on before this run may have left no time at all.
             if self.sample() > self.plan.first_sample(self.per_pass) && self.watch.time_is_up() {
                 return Ended::TimeIsUp;
@@ -268,6 +287,13 @@ impl Run<'_> {
             }
             self.show(false, companions);
         }
+    }
+
+    /// Whether the error is small enough, where that is to be judged.
+    fn is_good_enough(&self) -> bool {
+        let Some(target) = self.plan.target_error else { return false };
+        quality::is_due(self.session.steps())
+            && self.session.quality().is_some_and(|quality| quality.interval[1] <= target)
     }
 
     /// The number of the next sample of each pixel.
@@ -290,7 +316,7 @@ impl Run<'_> {
             return;
         }
         let (Some(checkpoint), Some(job)) = (&mut companions.checkpoint, self.job()) else { return };
-        let films = (self.session.film(), self.session.aovs());
+        let films = (self.session.film(), self.session.aovs(), *self.session.convergence());
         let trouble = checkpoint.keep(covered.end, |path| {
             films::write(path, films, Covered::from_range(covered), &self.identity, &job)
         });
@@ -316,7 +342,7 @@ impl Run<'_> {
         }
     }
 
-    /// Tells how far the render is; how noisy the picture is at most once a second, and in a hundredth of the time.
+    /// Tells how far the render is; how good the picture is at most once a second, and in a hundredth of the time.
     fn tell(&mut self) {
         let per_pass = u64::from(self.per_pass.max(1));
         let pass = self.sample() / per_pass;
@@ -326,15 +352,32 @@ impl Run<'_> {
         let of = of.map(|last| format!(" (of {first} to {last})"));
         let text = format!("pass {pass}{}", of.unwrap_or_default());
         let due = Duration::from_secs(1).max(100 * self.telling);
-        let noise = if self.watch.is_visible() && self.told.elapsed() >= due {
+        self.begun.get_or_insert((Instant::now(), self.session.steps()));
+        let more = if self.watch.is_visible() && self.told.elapsed() >= due {
             let begun = Instant::now();
-            let noise = noise::noise(self.session.film());
+            let more = self.how_good();
             (self.told, self.telling) = (Instant::now(), begun.elapsed());
-            noise.map(|noise| format!("noise {}", noise::percent(noise)))
+            more
         } else {
             None
         };
-        self.watch.tell(text, noise);
+        self.watch.tell(text, more);
+    }
+
+    /// What the picture states of its error, or else its noise; tells the display how long it will be until the error is
+    /// small enough.
+    fn how_good(&self) -> Option<String> {
+        let Some(quality) = self.session.quality() else {
+            let noise = noise::noise(self.session.film());
+            return noise.map(|noise| format!("noise {}", noise::percent(noise)));
+        };
+        if let (Some(target), Some((begun, before))) = (self.plan.target_error, self.begun) {
+            let steps = self.session.steps();
+            let of_step = begun.elapsed().as_secs_f64() / steps.saturating_sub(before).max(1) as f64;
+            let times = quality::times_the_steps(&quality, target, &self.session.settings().method);
+            self.watch.expect_end(of_step * steps as f64 * (times - 1.0));
+        }
+        Some(quality::short(&quality))
     }
 }
 

@@ -9,13 +9,15 @@ use serde_json::{Value, json};
 
 use crate::checkpoint::Checkpoint;
 use crate::console::Messages;
+use crate::denoise::Denoised;
 use crate::films;
-use crate::layers::LayerPlan;
+use crate::layers::{ERROR, LayerPlan};
 use crate::method;
 use crate::noise;
 use crate::numbers::{grouped, plural, power};
 use crate::output::{Kind, Output};
 use crate::plan::Plan;
+use crate::quality;
 use crate::rendering::{Ended, Rendered};
 
 /// A render and its circumstances.
@@ -30,6 +32,10 @@ pub struct Report<'a> {
     pub rendered: &'a Rendered,
     /// The files that were written.
     pub outputs: &'a [Output],
+    /// By what they were denoised.
+    pub denoised: Option<&'a Denoised>,
+    /// Whether the error of each pixel is to be a layer.
+    pub wants_error: bool,
     /// Where it is kept.
     pub checkpoint: Option<&'a Checkpoint>,
     /// How long it took to read the scene.
@@ -171,6 +177,10 @@ impl Report<'_> {
                 ));
             }
         }
+        self.check_error(messages);
+        if self.wants_error && rendered.quality.is_none() {
+            messages.warning("the layer error is left out: it cannot be told from so few passes");
+        }
         if !rendered.has_picture() {
             messages.warning("stopped before the first samples were complete: no picture is written");
         } else if self.plan.range.is_some() && self.outputs.iter().any(|o| o.kind != Kind::Film) {
@@ -181,11 +191,27 @@ impl Report<'_> {
             messages.warning("stopped before every pixel had a sample: there is no checkpoint");
         }
         let nothing_new = rendered.statistics.samples_per_pixel == 0 && rendered.has_film();
-        if nothing_new && rendered.ended == Ended::Finished {
-            let more =
-                if self.plan.range.is_some() { "" } else { ": for more, say --passes, --spp or --time" };
+        if nothing_new && matches!(rendered.ended, Ended::Finished | Ended::GoodEnough) {
+            let more = match self.plan.range {
+                Some(_) => "",
+                None => ": for more, say --passes, --spp, --time or --target-error",
+            };
             messages.note(&format!("everything was rendered before{more}"));
         }
+    }
+
+    /// Tells where the error is not as small as it was to be.
+    fn check_error(&self, messages: &mut Messages) {
+        let (Some(target), false) = (self.plan.target_error, self.rendered.ended == Ended::GoodEnough) else {
+            return;
+        };
+        let target = quality::percent(target);
+        messages.note(&match &self.rendered.quality {
+            Some(quality) => {
+                format!("the error is not known to be within {target} %: {}", quality::text(quality))
+            }
+            None => format!("whether the error is within {target} % cannot be told from so few passes"),
+        });
     }
 
     /// A block of lines.
@@ -196,6 +222,7 @@ impl Report<'_> {
         let method = self.settings.method.name();
         let ended = match r.ended {
             Ended::Finished => "",
+            Ended::GoodEnough => ", until its error was small enough",
             Ended::TimeIsUp => ", until the time was up",
             Ended::Interrupted => ", until it was stopped",
         };
@@ -235,11 +262,18 @@ impl Report<'_> {
         if let Some(share) = self.share_of_media() {
             let _ = writeln!(out, "light from media: {:.2} % of all", 100.0 * share);
         }
-        let noise = r.noise.map_or(String::new(), |noise| format!(", noise {}", noise::percent(noise)));
-        let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr){noise}", r.picture.0.mean_luminance());
+        let good = match (&r.quality, r.noise) {
+            (Some(quality), _) => format!(", {}", quality::text(quality)),
+            (None, Some(noise)) => format!(", noise {}", noise::percent(noise)),
+            (None, None) => String::new(),
+        };
+        let _ = writeln!(out, "mean luminance: {:.6} W/(m2 sr){good}", r.picture.0.mean_luminance());
         if let Some(checkpoint) = self.checkpoint {
             let (path, times) = (checkpoint.path().display(), plural(checkpoint.written, "time"));
             let _ = writeln!(out, "kept: {path}, written {times} in {:.2} s", checkpoint.spent.as_secs_f64());
+        }
+        if let Some(denoised) = self.denoised {
+            let _ = writeln!(out, "denoised: {}", denoised.text());
         }
         if !self.outputs.is_empty() {
             let names: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
@@ -301,6 +335,7 @@ impl Report<'_> {
             self.maps().iter().map(|map| (map.name.to_owned(), map.json())).collect();
         let seconds: serde_json::Map<_, _> =
             self.seconds().into_iter().map(|(name, s)| (name.to_owned(), json!(s))).collect();
+        let error = (self.wants_error && r.quality.is_some()).then_some(ERROR);
         let (film, _) = &r.picture;
         let image = film.develop();
         let outputs: Vec<String> = self.outputs.iter().map(|o| o.path.display().to_string()).collect();
@@ -316,10 +351,12 @@ impl Report<'_> {
                 "samples_per_pixel": self.plan.samples,
                 "passes": self.plan.passes,
                 "seconds": self.plan.seconds,
+                "target_error": self.plan.target_error,
                 "pass_range": self.plan.range.map(|range| [range.begin, range.end]),
             },
             "ended": match r.ended {
                 Ended::Finished => "finished",
+                Ended::GoodEnough => "error",
                 Ended::TimeIsUp => "time",
                 Ended::Interrupted => "interrupted",
             },
@@ -329,6 +366,7 @@ impl Report<'_> {
             "passes_done": r.passes_done(),
             "covered": if r.has_film() { vec![[r.covered.start, r.covered.end]] } else { Vec::new() },
             "noise": r.noise,
+            "quality": r.quality.as_ref().map(quality::json),
             "checkpoint": self.checkpoint.map(|checkpoint| json!({
                 "file": checkpoint.path().display().to_string(),
                 "written": checkpoint.written,
@@ -352,8 +390,9 @@ impl Report<'_> {
                 "medium": picture(s.picture.medium),
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
+            "denoised": self.denoised.map(Denoised::json),
             "outputs": outputs,
-            "layers": r.layers.iter().map(LayerPlan::name).collect::<Vec<_>>(),
+            "layers": r.layers.iter().map(LayerPlan::name).chain(error).collect::<Vec<_>>(),
             "messages": warnings,
         })
     }

@@ -33,6 +33,8 @@ fn of_this_run(mut flags: RenderArgs, args: &ResumeArgs) -> RenderArgs {
     flags.session.checkpoint = Some(args.file.clone());
     (flags.threads, flags.quiet, flags.json) = (args.threads, args.quiet, args.json);
     flags.watch = args.watch.clone();
+    flags.denoise.denoise = args.denoise.denoise || (flags.denoise.denoise && !args.no_denoise);
+    flags.denoise.oidn_library = args.denoise.oidn_library.clone().or(flags.denoise.oidn_library);
     flags
 }
 

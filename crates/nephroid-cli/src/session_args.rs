@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::{DisplayArgs, LimitArgs, seconds};
+use crate::args::{DisplayArgs, LimitArgs, percentage, seconds};
+use crate::denoise::DenoiseArgs;
 
 /// Passes A, …, B−1 of a render, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +71,11 @@ pub struct ResumeArgs {
     pub limits: FurtherArgs,
     #[command(flatten)]
     pub watch: WatchArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
+    /// Write the pictures as they are rendered, even if the render was to denoise them
+    #[arg(long, conflicts_with = "denoise", help_heading = "Denoising")]
+    pub no_denoise: bool,
 }
 
 /// Another end than the one planned.
@@ -85,11 +91,14 @@ pub struct FurtherArgs {
     /// Seconds from now; where the render was finished, beyond its end
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
+    /// The error of the picture that it states itself; where the render was finished, beyond its end
+    #[arg(long, value_name = "PERCENT", value_parser = percentage)]
+    pub target_error: Option<f64>,
 }
 
 impl From<FurtherArgs> for LimitArgs {
-    fn from(FurtherArgs { spp, passes, time }: FurtherArgs) -> Self {
-        Self { spp, passes, time }
+    fn from(FurtherArgs { spp, passes, time, target_error }: FurtherArgs) -> Self {
+        Self { spp, passes, time, target_error }
     }
 }
 
@@ -113,6 +122,8 @@ pub struct MergeArgs {
     pub json: bool,
     #[command(flatten)]
     pub display: DisplayArgs,
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
 }
 
 fn pass_range(text: &str) -> Result<PassRange, String> {

@@ -94,7 +94,7 @@ fn layers_that_cannot_be_are_refused() {
     refused(
         &["-o", "x.exr", "--aov", "albdeo"],
         "error: invalid value 'albdeo' for '--aov <NAME,…>': there is no such value: it must be one of direct, \
-         global, caustic, emitted, medium, albedo, normal, depth, position, geo_normal, uv, radius, count; did you mean \
+         global, caustic, emitted, medium, albedo, normal, depth, position, geo_normal, uv, radius, count, error; did you mean \
          \"albedo\"?",
     );
     refused(

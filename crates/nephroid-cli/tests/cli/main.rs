@@ -3,6 +3,8 @@
 // `clippy.toml` allows it in tests, but not in what tests have in common.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod denoising;
+mod errors;
 mod fogs;
 mod integrators;
 mod kills;

@@ -170,7 +170,7 @@ impl Convergence {
 fn off_sq(total: &PixelTotal, mean: f64, sum: &PixelSum) -> Option<f64> {
     let weight = total.weight();
     let before = weight - sum.weight;
-    if !sum.is_usable() || !(sum.weight > 0.0 && before > 0.0) {
+    if !(sum.is_usable() && sum.weight > 0.0 && before > 0.0) {
         return None;
     }
     // (x_n − ā_(n−1)) is (x_n − ā_n) W_n/W_(n−1).

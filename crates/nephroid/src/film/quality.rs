@@ -3,7 +3,7 @@
 use super::light::Lights;
 use super::{Convergence, Film};
 
-/// The fewest estimates of a pixel from which their spread is told.
+/// The fewest steps from which the spread of estimates is told, and how evenly they are spread.
 const FEWEST: u64 = 4;
 
 /// 90 % of a normal distribution lie within so many standard deviations.
@@ -68,7 +68,7 @@ impl Quality {
     /// [not for every method](crate::integrator::Method::tells_error). `None` if there are too few estimates, or no light.
     pub fn of(film: &Film, convergence: &Convergence, pixels: Pixels) -> Option<Self> {
         let estimates = film.pixels().iter().map(|pixel| u64::from(pixel.samples)).max()?;
-        if estimates < FEWEST {
+        if film.iterations().min(estimates) < FEWEST {
             return None;
         }
         let sums = Sums::of(film);
@@ -115,7 +115,10 @@ pub(super) fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) 
             let lever = 1.0 + of_delta * (2.0 * std::f64::consts::LN_2 + further);
             let of_ratio = scatter * lever * lever;
             let known = OF_EVENNESS / (OF_EVENNESS + of_ratio);
-            (libm::exp(known * ln_left), known * of_ratio)
+            // Half of what is beyond the ratio is a guess, and a fifth of that.
+            let guess = 0.5 * (ln_ratio.min(0.0) - ln_left);
+            let guesses = guess * guess + 0.04 * ln_ratio.min(0.0) * ln_ratio.min(0.0);
+            (libm::exp(known * ln_left), known * (of_ratio + guesses))
         }
         _ => (1.0, OF_EVENNESS),
     }
