@@ -1,6 +1,8 @@
 //! Integrators by their names.
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig};
+use nephroid::integrator::{
+    AutoConfig, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig,
+};
 use nephroid_formats::mitsuba::SceneFile;
 
 /// The integrator of a name, with its defaults.
@@ -10,6 +12,14 @@ pub fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
         "ppm" => {
             let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
             Method::Ppm(PpmConfig { mapper, ..Default::default() })
+        }
+        "vcm" => {
+            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
+            Method::Vcm(VcmConfig { mapper, ..Default::default() })
+        }
+        "auto" => {
+            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
+            Method::Auto(AutoConfig { ppm: PpmConfig { mapper, ..Default::default() } })
         }
         "ptracer" => Method::LightTracer(LightTracerConfig { max_depth }),
         "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),

@@ -47,7 +47,13 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file, &args.run.photons, &mut messages)?;
+    let method = method::choose(
+        args.integrator,
+        &file,
+        &args.run.photons,
+        method::Integrator::PhotonMapper,
+        &mut messages,
+    )?;
     if matches!(method, Method::LightTracer(_) | Method::Vcm(_)) {
         return Err(Failure::Usage(format!(
             "inspect: of {} there is too little to tell: its light paths start anywhere, and not at a pixel; inspect \

@@ -110,7 +110,7 @@ fn prepare(
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file, &args.photons, messages)?;
+    let method = method::choose(args.integrator, &file, &args.photons, method::Integrator::Auto, messages)?;
     resize(&mut file, args.resolution, messages)?;
     let checkpoint = args.session.checkpoint.as_deref();
     let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
