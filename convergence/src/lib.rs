@@ -177,7 +177,7 @@ pub fn render(world: &World, method: Method, samples_per_pixel: u32, seed: u64) 
 /// first.
 pub fn iterations(method: &Method) -> u64 {
     match method {
-        Method::Ppm(_) => 3,
+        Method::Ppm(_) | Method::Vcm(_) | Method::Auto(_) => 3,
         Method::PhotonMapper(_) | Method::Path(_) | Method::LightTracer(_) => 1,
     }
 }

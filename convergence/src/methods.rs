@@ -1,6 +1,8 @@
 //! Every method, and what it can do: the lists of tests are made of these.
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig};
+use nephroid::integrator::{
+    AutoConfig, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig,
+};
 
 use crate::progressive;
 
@@ -37,6 +39,10 @@ pub fn every_method(mapper: &PhotonMapperConfig) -> Vec<Contestant> {
         },
         photons(Method::PhotonMapper(mapper.clone())),
         photons(progressive(mapper.clone())),
+        photons(Method::Vcm(VcmConfig { mapper: mapper.clone(), ..VcmConfig::default() })),
+        photons(Method::Auto(AutoConfig {
+            ppm: PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() },
+        })),
     ]
 }
 

@@ -61,7 +61,8 @@ pub fn from_json(value: &Value) -> Option<RenderPlan> {
     })
 }
 
-fn chosen(choice: Choice) -> Value {
+/// What was chosen, and the work that each integrator would take.
+pub fn chosen(choice: Choice) -> Value {
     let Choice { pick, path, ppm, vcm, asked_for } = choice;
     let pick = match pick {
         Pick::Path => "path",
