@@ -9,7 +9,7 @@ use crate::transport::{MapPlan, PhotonPlan};
 const STORED_COST: f64 = 1.0;
 
 /// What a ray and what is done at its end cost, in rays of a path tracer, in a picture of 2^14 pixels. Maps grow with the
-/// picture, and with them the time that look-ups wait for memory: as its fourth root, up to three times, as measured.
+/// picture, and with them the time that look-ups wait for memory: as its cube root, up to four times, as measured.
 const RAY: f64 = 1.5;
 
 /// Estimates of later iterations blur less, and what photons make them vary by grows. This is for the sixteenth.
@@ -177,8 +177,8 @@ pub(super) fn balance(
 }
 
 fn cost_of_ray(pixels: u64) -> f64 {
-    let growth = (pixels as f64 / 16_384.0).sqrt().sqrt();
-    RAY * growth.clamp(1.0, 3.0)
+    let growth = libm::cbrt(pixels as f64 / 16_384.0);
+    RAY * growth.clamp(1.0, 4.0)
 }
 
 /// What the photons of a map cost in rays.
