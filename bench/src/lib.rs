@@ -1,6 +1,7 @@
 //! What the benches share: CPU time, and rounds in which the contestants take turns.
 
 pub mod embree;
+pub mod methods;
 pub mod reference;
 
 use std::time::Duration;

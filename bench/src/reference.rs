@@ -1,6 +1,6 @@
 //! What pictures are compared with.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nephroid::color::Rgb;
 use nephroid::film::ImageError;
@@ -11,6 +11,8 @@ use nephroid_formats::image::read_image;
 pub struct Reference {
     picture: Image,
     noise: Option<f64>,
+    /// The noise in [`Self::error_sq`].
+    luminance_noise: f64,
 }
 
 impl Reference {
@@ -19,7 +21,7 @@ impl Reference {
         let read = |path: &str| read_image(Path::new(path)).map(|file| file.image).map_err(|e| e.to_string());
         match files.split_once(',') {
             Some((a, b)) => Self::halves(&read(a)?, &read(b)?),
-            None => Ok(Self { picture: read(files)?, noise: None }),
+            None => Ok(Self { picture: read(files)?, noise: None, luminance_noise: 0.0 }),
         }
     }
 
@@ -30,7 +32,8 @@ impl Reference {
         let pixels: Vec<Rgb> = a.pixels.iter().zip(&b.pixels).map(|(&a, &b)| (a + b) * 0.5).collect();
         let picture = Image { width: a.width, height: a.height, pixels };
         let noise = ImageError::between(b, &picture, ImageError::EPSILON).map_err(|e| e.to_string())?.rel_mse;
-        Ok(Self { picture, noise: Some(noise) })
+        let luminance_noise = error_sq(b, &picture)?;
+        Ok(Self { picture, noise: Some(noise), luminance_noise })
     }
 
     /// Its own relMSE, if there are halves to know it from.
@@ -44,6 +47,49 @@ impl Reference {
         let error = error.map_err(|e| e.to_string())?;
         Ok((error.rel_mse - self.noise.unwrap_or(0.0), error.mean_ratio))
     }
+
+    /// The mean over the pixels of (a − t)² / (t² + (0.1 m)²), where a and t are a pixel's luminance in the picture and
+    /// here and m is the mean of t; without the noise of the reference if that is known.
+    pub fn error_sq(&self, picture: &Image) -> Result<f64, String> {
+        Ok(error_sq(picture, &self.picture)? - self.luminance_noise)
+    }
+
+    /// Its width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.picture.width, self.picture.height]
+    }
+}
+
+/// See [`Reference::error_sq`].
+fn error_sq(picture: &Image, reference: &Image) -> Result<f64, String> {
+    if [picture.width, picture.height] != [reference.width, reference.height] {
+        return Err("the picture and the reference differ in size".to_string());
+    }
+    let luminance = |image: &Image| -> Vec<f64> {
+        image.pixels.iter().map(|pixel| f64::from(pixel.luminance())).collect()
+    };
+    let (found, exact) = (luminance(picture), luminance(reference));
+    let count = exact.len() as f64;
+    let floor = 0.1 * exact.iter().sum::<f64>() / count;
+    let term = |(a, t): (&f64, &f64)| (a - t) * (a - t) / (t * t + floor * floor);
+    Ok(found.iter().zip(&exact).map(term).sum::<f64>() / count)
+}
+
+/// Scenes that have a reference, by name: `NAME.exr`, or the halves `NAME.a.exr` and `NAME.b.exr`.
+pub fn pairs_of_folders(scenes: &Path, references: &Path) -> Result<Vec<(PathBuf, String)>, String> {
+    let entries = scenes.read_dir().map_err(|e| format!("{}: {e}", scenes.display()))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    files.sort();
+    let reference = |scene: &Path| {
+        let name = scene.file_stem()?.to_string_lossy();
+        let [whole, a, b] = ["", ".a", ".b"].map(|part| references.join(format!("{name}{part}.exr")));
+        if a.exists() && b.exists() {
+            return Some(format!("{},{}", a.display(), b.display()));
+        }
+        whole.exists().then(|| whole.display().to_string())
+    };
+    Ok(files.into_iter().filter_map(|scene| reference(&scene).map(|r| (scene, r))).collect())
 }
 
 #[cfg(test)]
@@ -59,5 +105,14 @@ mod tests {
         let (rel_mse, mean_ratio) = reference.compare(&x).expect("it is of the same size");
         assert!((rel_mse - 8.0 / 4.01).abs() < 1e-9);
         assert!((mean_ratio - 2.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn errors_of_luminance_are_relative_to_the_pixel_and_the_mean() {
+        let [a, b, x] = [1.0, 3.0, 5.0].map(|value| Image::filled(2, 1, Rgb::splat(value)));
+        let reference = Reference::halves(&a, &b).expect("they are of one size");
+        // The same as above, over m² + (0.1 m)².
+        let found = reference.error_sq(&x).expect("it is of the same size");
+        assert!((found - 8.0 / 4.04).abs() < 1e-6, "{found}");
     }
 }

@@ -3,7 +3,9 @@
 
 mod curved;
 mod fog;
+mod methods;
 mod optics;
+mod rooms;
 mod slopes;
 mod view;
 mod volume_scenes;
@@ -13,12 +15,14 @@ pub use curved::{beside_a_light, over_pixels, under_a_light};
 pub use fog::{
     KERNELS, channel_means, collisions, expect_fair_books, grey_fog, medium_view, medium_views, volpath,
 };
+pub use methods::{Contestant, every_method, every_method_but};
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
+pub use rooms::{PixelKind, ROOM_PARTS, ROOMS, Room, RoomReference, kind_of_part, part_samples, pixel_kinds};
 use slopes::iterate_to;
 pub use slopes::{Errors, Part, Series, iterated, log_slope, single_iterations};
 pub use view::{
-    block_samples, forgiving, light_tracer, map_view, mean_radiances, path, photon_mapper, photons_of,
-    pixel_origins, progressive, renders,
+    block_samples, forgiving, iterated_renders, light_tracer, map_view, mean_radiances, path, photon_mapper,
+    photons_of, pixel_origins, progressive, renders,
 };
 pub use volume_scenes::{
     balls_in_fog, cloud_over_floor, foggy_niche, glossy_ball_in_fog, lantern_in_fog, three_media,
@@ -169,15 +173,21 @@ pub fn render(world: &World, method: Method, samples_per_pixel: u32, seed: u64) 
     session(world, method, samples_per_pixel, seed).film().develop()
 }
 
-/// Iterations of a progressive render in [`session`]: the second and the third are narrower than the first.
-const ITERATIONS: u64 = 3;
+/// The iterations of a render in [`session`]: three of a progressive one, as the second and the third are narrower than the
+/// first.
+pub fn iterations(method: &Method) -> u64 {
+    match method {
+        Method::Ppm(_) | Method::Vcm(_) | Method::Auto(_) => 3,
+        Method::PhotonMapper(_) | Method::Path(_) | Method::LightTracer(_) => 1,
+    }
+}
 
-/// Renders one iteration, or if it is a progressive method three, and keeps the session.
+/// Renders so many [`iterations`] and keeps the session.
 ///
 /// # Panics
 /// Never: nothing cancels it.
 pub fn session(world: &World, method: Method, samples_per_pixel: u32, seed: u64) -> Session<'_> {
-    let iterations = if matches!(method, Method::Ppm(_)) { ITERATIONS } else { 1 };
+    let iterations = iterations(&method);
     let settings = RenderSettings { method, samples_per_pixel, seed };
     let mut session = Session::new(world, settings, &Silent);
     iterate_to(&mut session, iterations);

@@ -28,7 +28,7 @@ pub(crate) fn iterate_to(session: &mut Session<'_>, iterations: u64) {
 }
 
 /// The mean of the channels of each pixel so far.
-fn pixels(session: &Session<'_>) -> Vec<f64> {
+pub(crate) fn pixels(session: &Session<'_>) -> Vec<f64> {
     let mean = |p: &nephroid::color::Rgb| p.to_array().iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0;
     session.film().develop().pixels.iter().map(mean).collect()
 }

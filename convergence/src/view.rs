@@ -8,10 +8,11 @@ use nephroid::integrator::{
 use nephroid::laboratory::{MapPhotons, record_photons};
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::observer::Silent;
-use nephroid::session::RenderSettings;
+use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
 
-use crate::{Builder, session};
+use crate::slopes::{iterate_to, pixels};
+use crate::{Builder, iterations};
 
 impl Builder {
     /// A scene seen by parallel rays from `origin` towards `target`, on a film of `width` by `height`
@@ -50,9 +51,22 @@ pub fn renders(
     samples_per_pixel: u32,
     seeds: std::ops::Range<u64>,
 ) -> Vec<Vec<f64>> {
+    iterated_renders(world, method, iterations(method), samples_per_pixel, seeds)
+}
+
+/// The same after so many iterations.
+pub fn iterated_renders(
+    world: &World,
+    method: &Method,
+    iterations: u64,
+    samples_per_pixel: u32,
+    seeds: std::ops::Range<u64>,
+) -> Vec<Vec<f64>> {
     let render = |seed| {
-        let picture = session(world, method.clone(), samples_per_pixel, seed).film().develop();
-        picture.pixels.iter().map(|p| p.to_array().iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0).collect()
+        let settings = RenderSettings { method: method.clone(), samples_per_pixel, seed };
+        let mut session = Session::new(world, settings, &Silent);
+        iterate_to(&mut session, iterations);
+        pixels(&session)
     };
     seeds.map(render).collect()
 }

@@ -12,11 +12,11 @@ use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, light_tracer, map_view, mean_radiances, path, photon_mapper};
+use nephroid_convergence::{Builder, Contestant, every_method_but, map_view, mean_radiances, photon_mapper};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
-/// Four methods for two scenes, and three in the furnace.
-const TESTS: usize = 11;
+/// More than the methods for three scenes.
+const TESTS: usize = 20;
 
 fn mask(b: &mut Builder, opacity: f32, inside: Handle<Material>) -> Handle<Material> {
     let opacity = b.constant(opacity);
@@ -31,13 +31,10 @@ fn square(b: &mut Builder, y: f64, half: f64, material: Handle<Material>) {
     b.shape(Geometry::Rectangle, to_world, material);
 }
 
-fn methods() -> [(&'static str, Method); 4] {
-    [
-        ("path", path()),
-        ("ptracer", light_tracer(None)),
-        ("photon mapper", Method::PhotonMapper(photon_mapper(2000))),
-        ("map on the spot", Method::PhotonMapper(map_view(Show::Direct, 20_000))),
-    ]
+fn methods() -> Vec<(&'static str, Method)> {
+    let methods = every_method_but(&["volpath", "ppm"], &photon_mapper(2000)).into_iter();
+    let map = ("map on the spot", Method::PhotonMapper(map_view(Show::Direct, 20_000)));
+    methods.map(|contestant| (contestant.method.name(), contestant.method)).chain([map]).collect()
 }
 
 /// Every method sees the same mean, to `bias`, relative.
@@ -93,7 +90,7 @@ fn white_veils_vanish_in_a_white_sky() {
     square(&mut b, 0.5, 1.0, thin);
     b.light(LightKind::Constant { radiance: Rgb::WHITE });
     let world = b.build();
-    judge("path", &world, &path(), 1.0, 0.0);
-    judge("ptracer", &world, &light_tracer(None), 1.0, 0.0);
-    judge("photon mapper", &world, &Method::PhotonMapper(photon_mapper(20_000)), 1.0, 0.01);
+    for Contestant { method, blurs, .. } in every_method_but(&["volpath", "ppm"], &photon_mapper(20_000)) {
+        judge(method.name(), &world, &method, 1.0, if blurs { 0.01 } else { 0.0 });
+    }
 }

@@ -10,12 +10,13 @@ use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::session::Statistics;
 use nephroid::shape::Geometry;
 use nephroid_convergence::{
-    Builder, light_tracer, map_view, mean_radiances, path, photon_mapper, polygon_irradiance, session,
+    Builder, Contestant, every_method_but, map_view, mean_radiances, photon_mapper, polygon_irradiance,
+    session,
 };
 use nephroid_testkit::{ALPHA, MeanTest, Tolerance, binomial_test, integrate_2d, sidak};
 
-/// Three counts, three pictures by path tracing and three by photon mapping.
-const TESTS: usize = 12;
+/// More than three counts and three pictures by each method.
+const TESTS: usize = 24;
 const PATHS: u64 = 400_000;
 
 /// Unit squares facing each other at distance 1.
@@ -138,7 +139,7 @@ fn a_closed_cube_lets_no_photon_out() {
 /// the emitter: F · exitance. `exact` is that mean over the window. L = ½ E / π.
 fn render(pair: &Pair, exact: f64) {
     let world = scene(pair, 16).build();
-    for method in [path(), light_tracer(None), Method::PhotonMapper(photon_mapper(0))] {
+    for Contestant { method, .. } in every_method_but(&["volpath", "ppm"], &photon_mapper(0)) {
         let radiances = mean_radiances(&world, &method, 64, 1..13);
         // Single precision is worth 1e-6.
         radiances

@@ -286,9 +286,14 @@ fn endless_parallel_plates_have_the_closed_form() {
     let world = b.build();
     let [m1, m2, r1, r2] = [emitted[0], emitted[1], albedo[0], albedo[1]].map(f64::from);
     let exact = (m1 + r1 * m2) / (1.0 - r1 * r2);
-    expect("path", &world, &path(None), 40, exact);
-    for direct in [DirectSource::Rays, DirectSource::Map] {
-        let config = PhotonMapperConfig { direct, final_gather: FinalGather::Off, ..mapper() };
-        expect(&format!("{direct:?}"), &world, &Method::PhotonMapper(config), 40, exact);
+    let on_the_spot = |direct| {
+        Method::PhotonMapper(PhotonMapperConfig { direct, final_gather: FinalGather::Off, ..mapper() })
+    };
+    for (name, method) in [
+        ("path", path(None)),
+        ("map", on_the_spot(DirectSource::Rays)),
+        ("direct from the map", on_the_spot(DirectSource::Map)),
+    ] {
+        expect(name, &world, &method, 40, exact);
     }
 }

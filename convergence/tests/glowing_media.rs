@@ -99,16 +99,16 @@ fn a_ball_of_gas_lights_a_floor() {
             let config = PhotonMapperConfig { final_gather, direct, max_depth, ..base };
             Method::PhotonMapper(config)
         };
+        // With camera samples of each pixel.
         let methods = [
-            volpath(None),
-            volpath(Some(2)),
-            mapper(FinalGather::Off, DirectSource::Rays, None),
-            mapper(FinalGather::Rays(2), DirectSource::Rays, Some(2)),
-            mapper(FinalGather::Off, DirectSource::Map, Some(2)),
+            (volpath(None), 64),
+            (volpath(Some(2)), 64),
+            (mapper(FinalGather::Off, DirectSource::Rays, None), 1),
+            (mapper(FinalGather::Rays(2), DirectSource::Rays, Some(2)), 1),
+            (mapper(FinalGather::Off, DirectSource::Map, Some(2)), 1),
         ];
-        for (i, method) in methods.iter().enumerate() {
-            let samples = if i < 2 { 64 } else { 1 };
-            let test: MeanTest = mean_radiances(&world, method, samples, 1..9).into_iter().collect();
+        for (i, (method, samples)) in methods.iter().enumerate() {
+            let test: MeanTest = mean_radiances(&world, method, *samples, 1..9).into_iter().collect();
             let outcome = test.within(exact, 0.01);
             assert!(outcome.passes(sidak(ALPHA, TESTS)), "{sigma_t}, {i}: {outcome}");
             assert!((test.mean() / exact - 1.0).abs() < 0.03, "{sigma_t}, {i}: {outcome}");
@@ -172,8 +172,8 @@ fn photons_of_a_cloud_bring_what_paths_find() {
             ..base()
         },
     ];
-    for (i, config) in methods.into_iter().enumerate() {
-        let photons = mean_radiances(&world, &Method::PhotonMapper(config), 16, 1..9);
+    for (i, method) in methods.map(Method::PhotonMapper).into_iter().enumerate() {
+        let photons = mean_radiances(&world, &method, 16, 1..9);
         let forgiven: MeanTest = forgiving(&paths, &photons, 0.02).into_iter().collect();
         let outcome = paths.iter().copied().collect::<MeanTest>().welch(&forgiven);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{i}: {outcome}");

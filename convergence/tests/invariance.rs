@@ -22,7 +22,7 @@ use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::{Image, Textures};
 use nephroid::transport::VolumeKind;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, balls_in_fog, light_tracer, means, session};
+use nephroid_convergence::{Builder, balls_in_fog, iterations, light_tracer, means, session};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// As many as the pairs of means compared.
@@ -188,7 +188,7 @@ fn scales_turns_and_moves_change_only_the_noise() {
     ];
     let unit = room(1.0, Transform::IDENTITY);
     // A progressive render has three iterations.
-    let seeds_of = |method: &Method| if matches!(method, Method::Ppm(_)) { 10 } else { 24 };
+    let seeds_of = |method: &Method| if iterations(method) > 1 { 10 } else { 24 };
     let references: Vec<MeanTest> = methods(1.0, Some(4000))
         .iter()
         .map(|(_, m)| means(&unit, m, 4, 0..seeds_of(m)).into_iter().collect())

@@ -8,7 +8,7 @@ use nephroid::camera::{FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{Crop, Filter};
 use nephroid::handle::Handle;
-use nephroid::integrator::Method;
+use nephroid::integrator::{Method, PhotonMapperConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
@@ -16,7 +16,7 @@ use nephroid::medium::{Coefficient, Phase};
 use nephroid::shape::{Geometry, Mesh};
 use nephroid::texture::Image;
 use nephroid_convergence::{
-    Builder, between, blocks, boxed, cloud_over_floor, facing, foggy_niche, lantern_in_fog, light_tracer,
+    Builder, between, blocks, boxed, cloud_over_floor, every_method_but, facing, foggy_niche, lantern_in_fog,
     three_media, volpath,
 };
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
@@ -29,19 +29,31 @@ const PARTS: usize = 10 * 3;
 /// More than the pairs of pictures.
 const PAIRS: usize = 24;
 
+/// The methods that do not blur and know of media, but for path tracing, by which they are judged.
+fn methods(max_depth: Option<u32>) -> Vec<Method> {
+    let mut methods = every_method_but(&["volpath"], &PhotonMapperConfig { max_depth, ..Default::default() });
+    methods.retain(|contestant| contestant.media && !contestant.blurs);
+    methods.into_iter().map(|contestant| contestant.method).collect()
+}
+
 /// Light tracing and path tracing see the same. Means are of twelve seeds each.
 fn agree(name: &str, b: Builder, max_depth: Option<u32>) {
     let world = b.build();
-    let pictures = |method: Method, seed| blocks(&world, &method, 24, seed..seed + 12, BLOCK);
-    let (traced, exact) = (pictures(light_tracer(max_depth), 100), pictures(volpath(max_depth), 200));
-    assert_eq!(traced.len(), PARTS);
-    for (part, (traced, exact)) in traced.iter().zip(&exact).enumerate() {
-        let [traced, exact]: [MeanTest; 2] = [traced, exact].map(|samples| samples.iter().copied().collect());
-        if traced.mean() == 0.0 && exact.mean() == 0.0 {
-            continue;
+    let pictures = |method: &Method, seed| blocks(&world, method, 24, seed..seed + 12, BLOCK);
+    let exact = pictures(&volpath(max_depth), 200);
+    for method in methods(max_depth) {
+        let traced = pictures(&method, 100);
+        assert_eq!(traced.len(), PARTS);
+        for (part, (traced, exact)) in traced.iter().zip(&exact).enumerate() {
+            let [traced, exact]: [MeanTest; 2] =
+                [traced, exact].map(|samples| samples.iter().copied().collect());
+            if traced.mean() == 0.0 && exact.mean() == 0.0 {
+                continue;
+            }
+            let outcome = traced.welch(&exact);
+            let level = sidak(ALPHA, PAIRS * PARTS);
+            assert!(outcome.passes(level), "{name}, {}, part {part}: {outcome}", method.name());
         }
-        let outcome = traced.welch(&exact);
-        assert!(outcome.passes(sidak(ALPHA, PAIRS * PARTS)), "{name}, part {part}: {outcome}");
     }
 }
 

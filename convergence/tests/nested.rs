@@ -4,17 +4,18 @@
 //! errors, which correct code exceeds once in 16 000 books. Seeds are fixed.
 
 use nephroid::color::Rgb;
-use nephroid::integrator::Method;
 use nephroid::light::LightKind;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::transport::WalkSettings;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, forgiving, mean_radiances, path, photon_mapper, photons};
+use nephroid_convergence::{
+    Builder, Contestant, every_method_but, forgiving, mean_radiances, path, photon_mapper, photons,
+};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
-/// What paths and photons bring to the floor.
-const TESTS: usize = 1;
+/// More than the methods whose photons bring to the floor what paths do.
+const TESTS: usize = 4;
 
 /// Glass from 0 to 1 and water from 0.9 to 2, seen from above.
 fn glass_of_water(priorities: [u32; 2], mut rest: impl FnMut(&mut Builder)) -> World {
@@ -34,7 +35,7 @@ fn glass_of_water(priorities: [u32; 2], mut rest: impl FnMut(&mut Builder)) -> W
 fn overlapping_glass_vanishes_in_a_uniform_sky() {
     for priorities in [[1, 0], [0, 1]] {
         let world = glass_of_water(priorities, |b| b.light(LightKind::Constant { radiance: Rgb::WHITE }));
-        for method in [path(), Method::PhotonMapper(photon_mapper(1000))] {
+        for Contestant { method, .. } in every_method_but(&["volpath", "ppm"], &photon_mapper(1000)) {
             for mean in mean_radiances(&world, &method, 4, 1..3) {
                 // Roulette alone makes noise, and only where light is caught for long.
                 assert!((mean - 1.0).abs() < 0.02, "{priorities:?}, {method:?}: {mean}");
@@ -60,10 +61,14 @@ fn lit_floor() -> World {
 fn paths_and_photons_bring_the_same_light() {
     let world = lit_floor();
     let paths = mean_radiances(&world, &path(), 64, 1..7);
-    let photons = mean_radiances(&world, &Method::PhotonMapper(photon_mapper(10_000)), 4, 1..7);
-    let forgiven: MeanTest = forgiving(&paths, &photons, 0.02).into_iter().collect();
-    let outcome = paths.iter().copied().collect::<MeanTest>().welch(&forgiven);
-    outcome.assert_passes(sidak(ALPHA, TESTS));
+    for Contestant { method, .. } in
+        every_method_but(&["path", "volpath", "ptracer", "ppm"], &photon_mapper(10_000))
+    {
+        let photons = mean_radiances(&world, &method, 4, 1..7);
+        let forgiven: MeanTest = forgiving(&paths, &photons, 0.02).into_iter().collect();
+        let outcome = paths.iter().copied().collect::<MeanTest>().welch(&forgiven);
+        assert!(outcome.passes(sidak(ALPHA, TESTS)), "{}: {outcome}", method.name());
+    }
     let mean = paths.iter().sum::<f64>() / 6.0;
     assert!(mean > 0.05, "it is lit: {mean}");
 }

@@ -12,7 +12,8 @@ use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_convergence::{
-    Builder, block_samples, forgiving, map_view, mean_radiances, path, photon_mapper, renders, session,
+    Builder, Contestant, block_samples, every_method_but, forgiving, map_view, mean_radiances, path,
+    photon_mapper, renders, session,
 };
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
@@ -24,8 +25,8 @@ const GLOSSY: f64 = 0.6;
 const SIDE: usize = 24;
 const BLOCK: usize = 8;
 const BLOCKS: usize = (SIDE / BLOCK) * (SIDE / BLOCK);
-/// For each exponent: the sky by two methods, photons, and a room by two methods.
-const TESTS: usize = EXPONENTS.len() * (2 + 1 + 2 * BLOCKS);
+/// More than, for each exponent, the sky by each method, photons, and a room by two methods.
+const TESTS: usize = EXPONENTS.len() * (6 + 1 + 3 * BLOCKS);
 
 fn level() -> f64 {
     sidak(ALPHA, TESTS)
@@ -50,7 +51,7 @@ fn under_a_white_sky_the_lobe_keeps_its_energy() {
         b.shape(Geometry::Rectangle, floor(), glossy);
         b.light(LightKind::Constant { radiance: Rgb::WHITE });
         let world = b.build();
-        for method in [path(), Method::PhotonMapper(photon_mapper(0))] {
+        for Contestant { method, .. } in every_method_but(&["volpath", "ppm"], &photon_mapper(0)) {
             let test: MeanTest = mean_radiances(&world, &method, 256, 1..9).into_iter().collect();
             test.within(DIFFUSE + GLOSSY, 1e-5).assert_passes(level());
         }
@@ -110,9 +111,10 @@ fn a_glossy_room_is_what_paths_make_it() {
     for exponent in EXPONENTS {
         let world = room(exponent);
         let paths = block_samples(&renders(&world, &path(), 64, 1..17), SIDE, BLOCK);
-        for (final_gather, bias) in [(FinalGather::Rays(4), 0.01), (FinalGather::Off, 0.02)] {
-            let config = PhotonMapperConfig { final_gather, ..photon_mapper(20_000) };
-            let pictures = renders(&world, &Method::PhotonMapper(config), 16, 21..37);
+        let mapper =
+            |final_gather| Method::PhotonMapper(PhotonMapperConfig { final_gather, ..photon_mapper(20_000) });
+        for (method, bias) in [(mapper(FinalGather::Rays(4)), 0.01), (mapper(FinalGather::Off), 0.02)] {
+            let pictures = renders(&world, &method, 16, 21..37);
             for (a, b) in block_samples(&pictures, SIDE, BLOCK).iter().zip(&paths) {
                 let mapped: MeanTest = a.iter().copied().collect();
                 let traced: MeanTest = forgiving(a, b, bias).into_iter().collect();

@@ -55,28 +55,45 @@ fn agree(name: &str, found: &[Vec<f64>], exact: &[Vec<f64>], bias: f64) {
     }
 }
 
-/// `specular` where mirrors or glass are seen, which light tracing leaves black.
-fn all_agree(b: Builder, specular: bool, bias: f64) {
-    let world = b.build();
-    assert_eq!(world.remarks(), []);
-    let exact = renders(&world, &volpath(None), 96, 0..SEEDS);
+/// How a method's pictures are made.
+enum Pictures {
+    /// Of so many camera samples.
+    Samples(u32),
+    /// See [`late`].
+    Late,
+}
+
+/// The ways to see a scene, path tracing aside: what each is called, how far it may be off and how its pictures are made.
+/// `specular` where mirrors or glass are seen, which light tracing leaves black; `bias` is what photons blur.
+fn ways(specular: bool, bias: f64) -> Vec<(String, Method, f64, Pictures)> {
+    let mut ways = Vec::new();
     if !specular {
-        agree("ptracer", &renders(&world, &light_tracer(None), 64, 100..100 + SEEDS), &exact, 0.0);
+        ways.push(("ptracer".to_string(), light_tracer(None), 0.0, Pictures::Samples(64)));
     }
     // Maps that few paths reach stay small: they would take most of the time.
     let mapper = PhotonMapperConfig { volume_photons: Some(10_000), emit_max: 10, ..photon_mapper(10_000) };
-    agree(
-        "photon mapper",
-        &renders(&world, &Method::PhotonMapper(mapper.clone()), 8, 200..200 + SEEDS),
-        &exact,
-        bias,
-    );
+    let once = Method::PhotonMapper(mapper.clone());
+    ways.push(("photon mapper".to_string(), once, bias, Pictures::Samples(8)));
     for final_gather in [FinalGather::Auto, FinalGather::Off] {
         let Method::Ppm(config) = progressive(PhotonMapperConfig { final_gather, ..mapper.clone() }) else {
             unreachable!("it is progressive")
         };
         let method = Method::Ppm(PpmConfig { samples_per_pixel: Some(6), ..config });
-        agree(&format!("ppm, gather {final_gather:?}"), &late(&world, &method), &exact, bias);
+        ways.push((format!("ppm, gather {final_gather:?}"), method, bias, Pictures::Late));
+    }
+    ways
+}
+
+fn all_agree(b: Builder, specular: bool, bias: f64) {
+    let world = b.build();
+    assert_eq!(world.remarks(), []);
+    let exact = renders(&world, &volpath(None), 96, 0..SEEDS);
+    for (first, (name, method, bias, pictures)) in (1..).map(|i| 100 * i).zip(ways(specular, bias)) {
+        let found = match pictures {
+            Pictures::Samples(samples) => renders(&world, &method, samples, first..first + SEEDS),
+            Pictures::Late => late(&world, &method),
+        };
+        agree(&name, &found, &exact, bias);
     }
 }
 

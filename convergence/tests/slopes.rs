@@ -22,8 +22,8 @@ use nephroid::shape::Geometry;
 use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 use nephroid_convergence::{
-    Builder, Part, Series, beside_a_light, light_tracer, log_slope, medium_view, over_pixels, path,
-    polygon_irradiance, progressive, under_a_light, volpath,
+    Builder, Part, Series, beside_a_light, every_method, log_slope, medium_view, over_pixels,
+    polygon_irradiance, progressive, under_a_light,
 };
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
@@ -151,7 +151,10 @@ fn unbiased() {
     let exact = over_pixels(&world, 2.0 * HALF / f64::from(SIDE), |p| {
         polygon_irradiance(&corners, DVec3::new(p.x, 0.0, p.z), DVec3::Y) / PI
     });
-    for method in [path(), volpath(None), light_tracer(None)] {
+    let methods = every_method(&PhotonMapperConfig::default());
+    for method in
+        methods.into_iter().filter(|contestant| !contestant.blurs).map(|contestant| contestant.method)
+    {
         let name = method.name();
         let series = Series::render(&world, &method, &numbers(), 0..SEEDS, &exact);
         judge(name, &series.slope(Part::Mse), -1.0, -1.0);

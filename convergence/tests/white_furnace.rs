@@ -12,7 +12,7 @@ use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::texture::Image;
 use nephroid::world::World;
-use nephroid_convergence::{Builder, light_tracer, means, render, session};
+use nephroid_convergence::{Builder, every_method_but, means, render, session};
 use nephroid_testkit::{ALPHA, MeanTest, Outcome, PixelTest, sidak};
 
 /// More than the statistical tests of this file.
@@ -36,12 +36,10 @@ fn photon_mapper(config: PhotonMapperConfig) -> Method {
     Method::PhotonMapper(PhotonMapperConfig { emit: Some(1000), ..config })
 }
 
-fn methods() -> [(&'static str, Method); 3] {
-    [
-        ("ptracer", light_tracer(None)),
-        ("path", Method::Path(PathConfig::default())),
-        ("photon mapper", photon_mapper(PhotonMapperConfig::default())),
-    ]
+fn methods() -> Vec<(&'static str, Method)> {
+    let mapper = PhotonMapperConfig { emit: Some(1000), ..PhotonMapperConfig::default() };
+    let methods = every_method_but(&["volpath", "ppm"], &mapper).into_iter();
+    methods.map(|contestant| (contestant.method.name(), contestant.method)).collect()
 }
 
 #[track_caller]
@@ -148,21 +146,28 @@ fn a_glass_ball_in_a_glowing_room_changes_nothing() {
         room.emission = Some(glow);
         b.sphere(Vec3::ZERO, 1.0, glass);
         let world = b.build();
-        for direct in [DirectSource::Rays, DirectSource::Map] {
-            for final_gather in [FinalGather::Off, FinalGather::Rays(2)] {
-                let config = PhotonMapperConfig {
-                    direct,
-                    final_gather,
-                    radius: Some(0.3),
-                    emit: Some(2000),
-                    ..Default::default()
-                };
-                let name = format!("{direct:?} {final_gather:?} from {origin}");
-                room_test(&name, &world, &Method::PhotonMapper(config), exact);
-            }
+        for (name, method) in methods_of_fixed_radius(0.3) {
+            room_test(&format!("{name} from {origin}"), &world, &method, exact);
         }
-        room_test(&format!("path from {origin}"), &world, &Method::Path(PathConfig::default()), exact);
     }
+}
+
+/// Path tracing, and photon mapping in all ways to read its maps.
+fn methods_of_fixed_radius(radius: f32) -> Vec<(String, Method)> {
+    let mut methods = vec![("path".to_string(), Method::Path(PathConfig::default()))];
+    for direct in [DirectSource::Rays, DirectSource::Map] {
+        for final_gather in [FinalGather::Off, FinalGather::Rays(2)] {
+            let config = PhotonMapperConfig {
+                direct,
+                final_gather,
+                radius: Some(radius),
+                emit: Some(2000),
+                ..Default::default()
+            };
+            methods.push((format!("{direct:?} {final_gather:?}"), Method::PhotonMapper(config)));
+        }
+    }
+    methods
 }
 
 #[track_caller]

@@ -17,29 +17,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig};
+use nephroid::integrator::Method;
 use nephroid::observer::Silent;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
 use nephroid_bench::cpu_time;
-use nephroid_bench::reference::Reference;
-use nephroid_formats::mitsuba::{Options, SceneFile, read_scene};
+use nephroid_bench::methods::{known_names, max_depth, method};
+use nephroid_bench::reference::{Reference, pairs_of_folders};
+use nephroid_formats::mitsuba::{Options, read_scene};
 use nephroid_formats::vfs::DiskFiles;
-
-/// The integrator of a name, with its defaults.
-fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
-    Some(match name {
-        "photonmapper" => Method::PhotonMapper(PhotonMapperConfig { max_depth, ..Default::default() }),
-        "ppm" => {
-            let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
-            Method::Ppm(PpmConfig { mapper, ..Default::default() })
-        }
-        "ptracer" => Method::LightTracer(LightTracerConfig { max_depth }),
-        "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),
-        "volpath" => Method::Path(PathConfig { max_depth, media: true, ..Default::default() }),
-        _ => return None,
-    })
-}
 
 /// What may be given beside scenes and references.
 const OPTIONS: [&str; 5] = ["--methods", "--spp", "--marks", "--seed", "--csv"];
@@ -124,6 +110,9 @@ fn converge(
     let (mut session, mut cpu) = (None, Duration::ZERO);
     cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
     let mut session = session.ok_or("no session")?;
+    if let Some(choice) = &session.plan().choice {
+        eprintln!("after {:.2} s: {}", cpu.as_secs_f64(), choice.reason());
+    }
     let mut shown = None;
     for &mark in marks {
         while cpu.as_secs_f64() < mark {
@@ -147,12 +136,6 @@ fn converge(
     Ok(())
 }
 
-/// What the scene says of the longest path; less than nothing is no end.
-fn max_depth(file: &SceneFile) -> Result<Option<u32>, String> {
-    let depth = file.integrator.get_int("max_depth").map_err(|e| e.to_string())?;
-    Ok(depth.and_then(|depth| u32::try_from(depth).ok()))
-}
-
 impl Arguments {
     fn read(mut words: impl Iterator<Item = String>) -> Result<Self, String> {
         let mut arguments = Self {
@@ -170,13 +153,7 @@ impl Arguments {
             let value = words.next().ok_or_else(|| format!("{word} needs a value or a reference"))?;
             let wrong = |e: &dyn std::fmt::Display| format!("{word} {value}: {e}");
             match word.as_str() {
-                "--methods" => {
-                    arguments.methods = value.split(',').map(str::to_string).collect();
-                    if let Some(unknown) = arguments.methods.iter().find(|name| method(name, None).is_none())
-                    {
-                        return Err(format!("no integrator is called {unknown}"));
-                    }
-                }
+                "--methods" => arguments.methods = known_names(&value)?,
                 "--spp" => arguments.samples_per_pixel = value.parse().map_err(|e| wrong(&e))?,
                 "--marks" => {
                     let marks: Result<_, _> = value.split(',').map(str::parse).collect();
@@ -195,21 +172,4 @@ impl Arguments {
         }
         Ok(arguments)
     }
-}
-
-/// Scenes that have a reference, by name: `NAME.exr`, or the halves `NAME.a.exr` and `NAME.b.exr`.
-fn pairs_of_folders(scenes: &Path, references: &Path) -> Result<Vec<(PathBuf, String)>, String> {
-    let entries = scenes.read_dir().map_err(|e| format!("{}: {e}", scenes.display()))?;
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "xml"));
-    files.sort();
-    let reference = |scene: &Path| {
-        let name = scene.file_stem()?.to_string_lossy();
-        let [whole, a, b] = ["", ".a", ".b"].map(|part| references.join(format!("{name}{part}.exr")));
-        if a.exists() && b.exists() {
-            return Some(format!("{},{}", a.display(), b.display()));
-        }
-        whole.exists().then(|| whole.display().to_string())
-    };
-    Ok(files.into_iter().filter_map(|scene| reference(&scene).map(|r| (scene, r))).collect())
 }

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use nephroid::film::FilmSettings;
-use nephroid::integrator::Method;
 use nephroid::session::{RenderPlan, RenderSettings};
 use nephroid_formats::vfs::Files;
 use serde_json::Value;
@@ -98,7 +97,7 @@ pub fn of_render(
         }
     }
     // A progressive render plans them itself.
-    if !matches!(settings.method, Method::Ppm(_)) {
+    if !settings.method.is_progressive() {
         add("samples per pass", settings.samples_per_pixel.to_string());
     }
     add("seed", settings.seed.to_string());

@@ -47,11 +47,19 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file, &args.run.photons, &mut messages)?;
-    if let Method::LightTracer(_) = method {
-        let message = "inspect: of ptracer there is nothing to tell: its light paths start anywhere, and not at a pixel; \
-                       inspect path or volpath";
-        return Err(Failure::Usage(message.to_owned()));
+    let method = method::choose(
+        args.integrator,
+        &file,
+        &args.run.photons,
+        method::Integrator::PhotonMapper,
+        &mut messages,
+    )?;
+    if matches!(method, Method::LightTracer(_) | Method::Vcm(_)) {
+        return Err(Failure::Usage(format!(
+            "inspect: of {} there is too little to tell: its light paths start anywhere, and not at a pixel; inspect \
+             path, volpath or ppm",
+            method.name()
+        )));
     }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let limits = LimitArgs { spp: args.spp, passes: args.passes, ..LimitArgs::default() };
@@ -68,7 +76,7 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
     }
     // Passes of a progressive render have samples of their own number.
     let end = match &settings.method {
-        Method::Ppm(_) => plan.samples,
+        method if method.is_progressive() => plan.samples,
         _ => plan.end(plan.samples_per_pass),
     };
     let samples = end.unwrap_or(u64::MAX);

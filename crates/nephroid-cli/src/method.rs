@@ -1,6 +1,6 @@
 //! Which integrator renders, and with which parameters.
 
-use nephroid::integrator::{LightTracerConfig, Method, PathConfig, PpmConfig};
+use nephroid::integrator::{AutoConfig, LightTracerConfig, Method, PathConfig, PpmConfig, VcmConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
 use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
@@ -17,6 +17,10 @@ pub enum Integrator {
     PhotonMapper,
     /// Progressive photon mapping.
     Ppm,
+    /// Whatever trials find best.
+    Auto,
+    /// Vertex connection and merging.
+    Vcm,
     /// Path tracing.
     Path,
     /// Path tracing through media.
@@ -33,33 +37,37 @@ impl Integrator {
         match name {
             "photonmapper" => Ok(Self::PhotonMapper),
             "ppm" => Ok(Self::Ppm),
+            "auto" => Ok(Self::Auto),
+            "vcm" => Ok(Self::Vcm),
             "path" => Ok(Self::Path),
             "volpath" => Ok(Self::VolPath),
             "ptracer" => Ok(Self::PTracer),
             "scene" => Ok(Self::Scene),
-            _ => Err("it must be photonmapper, ppm, path, volpath, ptracer or scene".to_owned()),
+            _ => Err("it must be auto, photonmapper, ppm, vcm, path, volpath, ptracer or scene".to_owned()),
         }
     }
 }
 
 /// Settles the integrator: what the command line says; else the scene's, if it is one for photons;
-/// else the photon mapper. Parameters of the scene's integrator count for the other one for photons, too.
+/// else the default, or the photon mapper where flags ask for what only that has. Parameters of the scene's integrator count for the other one for photons, too.
 pub fn choose(
     wanted: Option<Integrator>,
     file: &SceneFile,
     flags: &PhotonFlags,
+    default: Integrator,
     messages: &mut Messages,
 ) -> Result<Method, Failure> {
     let request = &file.integrator;
     let chosen = match wanted {
         Some(Integrator::Scene) => by_scene(request)?,
         Some(other) => other,
-        None if request.name == "ppm" => Integrator::Ppm,
-        None => Integrator::PhotonMapper,
+        None => {
+            of_file(request).unwrap_or(if asks_for_maps(flags) { Integrator::PhotonMapper } else { default })
+        }
     };
     let mut draft = Draft::default();
     let complaints = match request.name.as_str() {
-        "photonmapper" | "ppm" => read_all(request, &mut draft),
+        "photonmapper" | "ppm" | "vcm" | "auto" => read_all(request, &mut draft),
         _ => read_depth(request, &mut draft),
     };
     let (errors, warnings): (Vec<_>, Vec<_>) =
@@ -70,7 +78,7 @@ pub fn choose(
     for warning in &warnings {
         messages.diagnostic(warning);
     }
-    if request.name != "ppm" {
+    if !matches!(request.name.as_str(), "ppm" | "vcm" | "auto") {
         // Numbers that suit one pass are no reason not to plan.
         draft.forget_what_came_in();
     }
@@ -78,10 +86,11 @@ pub fn choose(
         // Checked when the command line was read.
         parameter.set(&mut draft, value).map_err(Failure::Usage)?;
     }
-    if wanted.is_none() && !matches!(request.name.as_str(), "photonmapper" | "ppm" | "") {
+    if wanted.is_none() && of_file(request).is_none() && !request.name.is_empty() {
         messages.note(&format!(
-            "the scene asks for the integrator \"{}\"; rendering with photonmapper (see --integrator)",
-            request.name
+            "the scene asks for the integrator \"{}\"; rendering with {} (see --integrator)",
+            request.name,
+            if chosen == Integrator::Auto { "auto" } else { "photonmapper" }
         ));
     }
     let plan_photons = !PHOTON_COUNTS.iter().any(|name| draft.has(name));
@@ -102,15 +111,32 @@ pub fn choose(
         return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
     }
     media_flags::settle(&mut config, file, flags, messages)?;
-    if chosen == Integrator::Ppm {
-        return Ok(Method::Ppm(PpmConfig {
-            mapper: config,
-            plan_photons,
-            plan_neighbours,
-            samples_per_pixel: None,
-        }));
+    if chosen == Integrator::Vcm {
+        return Ok(Method::Vcm(VcmConfig { mapper: config, ..VcmConfig::default() }));
     }
-    Ok(Method::PhotonMapper(config))
+    let ppm = |mapper| PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel: None };
+    Ok(match chosen {
+        Integrator::Auto => Method::Auto(AutoConfig { ppm: ppm(config) }),
+        Integrator::Ppm => Method::Ppm(ppm(config)),
+        _ => Method::PhotonMapper(config),
+    })
+}
+
+/// The integrator of a file, if it is one of ours for photons.
+fn of_file(request: &IntegratorRequest) -> Option<Integrator> {
+    match request.name.as_str() {
+        "photonmapper" => Some(Integrator::PhotonMapper),
+        "ppm" => Some(Integrator::Ppm),
+        "vcm" => Some(Integrator::Vcm),
+        "auto" => Some(Integrator::Auto),
+        _ => None,
+    }
+}
+
+/// Whether flags are given that say how photons are stored and looked up on surfaces.
+fn asks_for_maps(flags: &PhotonFlags) -> bool {
+    const SHARED: [&str; 2] = ["--max-depth", "--direct-lights"];
+    flags.names().iter().any(|flag| !SHARED.contains(&flag.as_str()))
 }
 
 /// Parameters that say how many photons to emit; a progressive render plans that where none is given.
@@ -130,6 +156,8 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
     match request.name.as_str() {
         "" | "photonmapper" => Ok(Integrator::PhotonMapper),
         "ppm" => Ok(Integrator::Ppm),
+        "vcm" => Ok(Integrator::Vcm),
+        "auto" => Ok(Integrator::Auto),
         "path" => Ok(Integrator::Path),
         "volpath" | "volpathmis" => Ok(Integrator::VolPath),
         "ptracer" => Ok(Integrator::PTracer),
@@ -202,6 +230,19 @@ pub fn describe(method: &Method) -> Value {
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
             object.insert("plan_photons".to_owned(), json!(plan_photons));
             object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
+        }
+        Method::Auto(AutoConfig { ppm }) => {
+            let PpmConfig { mapper, plan_photons, plan_neighbours, .. } = ppm;
+            object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
+            object.insert("plan_photons".to_owned(), json!(plan_photons));
+            object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
+        }
+        Method::Vcm(VcmConfig { mapper, light_paths, connections, merging, correlation }) => {
+            object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
+            object.insert("light_paths".to_owned(), json!(light_paths));
+            object.insert("connections".to_owned(), json!(connections));
+            object.insert("merging".to_owned(), json!(merging));
+            object.insert("correlation".to_owned(), json!(correlation));
         }
         Method::Path(PathConfig { max_depth, direct_lights, .. }) => {
             let config = nephroid::integrator::PhotonMapperConfig {

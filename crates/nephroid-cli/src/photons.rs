@@ -40,7 +40,7 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
         messages.diagnostic(warning);
     }
     let wanted = Some(Integrator::PhotonMapper);
-    let method = method::choose(wanted, &file, &args.run.photons, &mut messages)?;
+    let method = method::choose(wanted, &file, &args.run.photons, Integrator::PhotonMapper, &mut messages)?;
     let beams = method.mapper().is_some_and(|config| config.volume_kind == VolumeKind::Beams);
     let in_media = |map: &MapName| matches!(map, MapName::Volume | MapName::VolumeCaustic);
     if beams && args.maps.iter().any(in_media) {

@@ -1,6 +1,6 @@
 //! What a render decided before its first pass, as JSON and back, and as entries to compare.
 
-use nephroid::integrator::CameraPlan;
+use nephroid::integrator::{CameraPlan, Choice, Pick};
 use nephroid::session::RenderPlan;
 use nephroid::transport::{MapPlan, PhotonPlan};
 use serde_json::{Value, json};
@@ -10,9 +10,9 @@ pub const ENTRIES: &str = "decided:";
 
 /// One object. Every field is named here, so that a new one is not forgotten.
 pub fn to_json(plan: &RenderPlan) -> Value {
-    let RenderPlan { photons, camera } = *plan;
+    let RenderPlan { photons, camera, choice } = *plan;
     let PhotonPlan { global, caustic, volume, volume_caustic } = photons;
-    let CameraPlan { samples_per_pixel, stride, gather_rays, neighbours } = camera;
+    let CameraPlan { samples_per_pixel, stride, gather_rays, neighbours, merging_radius } = camera;
     json!({
         "photons": {
             "global": map(global),
@@ -25,7 +25,9 @@ pub fn to_json(plan: &RenderPlan) -> Value {
             "stride": stride,
             "gather_rays": gather_rays,
             "neighbours": neighbours,
+            "merging_radius": f64::from(merging_radius),
         },
+        "choice": choice.map(chosen),
     })
 }
 
@@ -50,7 +52,51 @@ pub fn from_json(value: &Value) -> Option<RenderPlan> {
             stride: small("stride").filter(|n| *n > 0)?,
             gather_rays,
             neighbours: [neighbours(0)?, neighbours(1)?],
+            merging_radius: camera["merging_radius"].as_f64()? as f32,
         },
+        choice: match &value["choice"] {
+            Value::Null => None,
+            choice => Some(unchosen(choice)?),
+        },
+    })
+}
+
+/// What was chosen, and the work that each integrator would take.
+pub fn chosen(choice: Choice) -> Value {
+    let Choice { pick, path, ppm, vcm, asked_for } = choice;
+    let pick = match pick {
+        Pick::Path => "path",
+        Pick::Ppm => "ppm",
+        Pick::Vcm { connections: false } => "vcm",
+        Pick::Vcm { connections: true } => "vcm with connections",
+    };
+    // There is no infinity in JSON.
+    let work = |work: f64| work.is_finite().then_some(work);
+    json!({
+        "pick": pick,
+        "work": { "path": work(path), "ppm": work(ppm), "vcm": work(vcm[0]), "vcm_with_connections": work(vcm[1]) },
+        "asked_for": asked_for,
+    })
+}
+
+fn unchosen(value: &Value) -> Option<Choice> {
+    let pick = match value["pick"].as_str()? {
+        "path" => Pick::Path,
+        "ppm" => Pick::Ppm,
+        "vcm" => Pick::Vcm { connections: false },
+        "vcm with connections" => Pick::Vcm { connections: true },
+        _ => return None,
+    };
+    let work = |name: &str| match &value["work"][name] {
+        Value::Null => Some(f64::INFINITY),
+        work => work.as_f64(),
+    };
+    Some(Choice {
+        pick,
+        path: work("path")?,
+        ppm: work("ppm")?,
+        vcm: [work("vcm")?, work("vcm_with_connections")?],
+        asked_for: value["asked_for"].as_bool()?,
     })
 }
 
@@ -103,14 +149,19 @@ mod tests {
                 stride: 4,
                 gather_rays: Some(13),
                 neighbours: [50, 60],
+                merging_radius: 0.1,
             },
+            choice: None,
         }
     }
 
     #[test]
     fn a_plan_survives_the_way_through_text() {
-        for gather_rays in [None, Some(u32::MAX)] {
-            let mut plan = plan();
+        let path = f64::INFINITY;
+        let chosen = |pick| Choice { pick, path, ppm: 0.1, vcm: [1e-9, 3.0], asked_for: false };
+        let choices = [None, Some(chosen(Pick::Path)), Some(chosen(Pick::Vcm { connections: true }))];
+        for (gather_rays, choice) in [None, Some(u32::MAX), Some(1)].into_iter().zip(choices) {
+            let mut plan = RenderPlan { choice, ..plan() };
             plan.camera.gather_rays = gather_rays;
             let text = to_json(&plan).to_string();
             assert_eq!(from_json(&serde_json::from_str(&text).unwrap()), Some(plan));
@@ -136,7 +187,7 @@ mod tests {
     #[test]
     fn entries_name_every_number() {
         let entries = entries(&plan());
-        assert_eq!(entries.len(), 16);
+        assert_eq!(entries.len(), 18);
         assert!(entries.contains(&("decided: photons caustic paths".to_owned(), u64::MAX.to_string())));
         assert!(entries.contains(&("decided: camera gather rays".to_owned(), "13".to_owned())));
     }

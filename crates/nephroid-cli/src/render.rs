@@ -5,7 +5,6 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use nephroid::integrator::Method;
 use nephroid::session::RenderSettings;
 use nephroid_denoise::Denoiser;
 use nephroid_formats::film_file::identity_differences;
@@ -111,7 +110,7 @@ fn prepare(
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(args.integrator, &file, &args.photons, messages)?;
+    let method = method::choose(args.integrator, &file, &args.photons, method::Integrator::Auto, messages)?;
     resize(&mut file, args.resolution, messages)?;
     let checkpoint = args.session.checkpoint.as_deref();
     let keeps_layers = checkpoint.is_some() || outputs.iter().any(|output| output.kind != Kind::Png);
@@ -136,7 +135,7 @@ fn prepare(
             begun.job.limits.resumed(limits, begun.job.spent, &done)?
         }
         None => {
-            let progressive = matches!(method, Method::Ppm(_));
+            let progressive = method.is_progressive();
             let whole = Plan::new(&args.limits, file.sample_count);
             whole.part(&args.limits, args.session.pass_range, progressive)?
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use nephroid::film::{AovFilm, Convergence, Film, Quality};
-use nephroid::integrator::{LightTracerConfig, Method};
+use nephroid::integrator::{Choice, LightTracerConfig, Method};
 use nephroid::session::{Place, RenderPlan, RenderSettings, Session, Statistics};
 use nephroid::world::World;
 use nephroid_formats::diagnostic::Diagnostic;
@@ -73,6 +73,10 @@ pub struct Rendered {
     pub lights: Vec<String>,
     /// Whether any of them has power.
     pub has_light: bool,
+    /// The integrator that rendered.
+    pub method: Method,
+    /// Why it did, if that was to be found.
+    pub choice: Option<Choice>,
     /// Whether there are mirrors or glass that the integrator sees nothing in.
     pub blind_to_specular: bool,
     /// Why it ended.
@@ -160,6 +164,9 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
     let session = session(&world, settings, &layers, begun, &plan, &watch)?;
+    if let Some(choice) = &session.plan().choice {
+        companions.messages.note(&format!("auto: {}", choice.reason()));
+    }
     let decided = *session.plan();
     let mut run = Run {
         session,
@@ -196,6 +203,8 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         remarks: load::remarks(&world, &origins),
         lights: world.lights().map(|(name, _)| name.to_owned()).collect(),
         has_light: has_light(&world),
+        method: run.session.method().clone(),
+        choice: run.session.plan().choice,
         blind_to_specular: matches!(run.session.settings().method, Method::LightTracer(_))
             && LightTracerConfig::misses(&world),
         ended,

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use nephroid::integrator::Method;
 use nephroid::session::{MapStatistics, RenderSettings};
 use nephroid::transport::{Balance, MapPlan, VolumeKind};
 use serde_json::{Value, json};
@@ -18,6 +17,7 @@ use crate::noise;
 use crate::numbers::{grouped, plural, power};
 use crate::output::{Kind, Output};
 use crate::plan::Plan;
+use crate::plan_json;
 use crate::quality;
 use crate::rendering::{Ended, Rendered};
 
@@ -81,11 +81,11 @@ impl Map {
 
 impl Report<'_> {
     fn maps(&self) -> Vec<Map> {
-        let Some(config) = self.settings.method.mapper() else { return Vec::new() };
+        let Some(config) = self.rendered.method.mapper() else { return Vec::new() };
         let s = &self.rendered.statistics;
         let plan = s.plan.photons;
         // What a progressive render wants is what it planned.
-        let planned = matches!(self.settings.method, Method::Ppm(_));
+        let planned = self.rendered.method.is_progressive();
         let wanted = |asked: u64, plan: MapPlan| if planned { plan.expected_photons } else { asked };
         let what = "photons";
         let mut maps = vec![
@@ -215,12 +215,18 @@ impl Report<'_> {
         });
     }
 
+    /// What rendered, in a few words.
+    fn method(&self) -> String {
+        let (asked, chosen) = (self.settings.method.name(), self.rendered.method.name());
+        if asked == chosen { asked.to_owned() } else { format!("{asked} ({chosen})") }
+    }
+
     /// A block of lines.
     pub fn text(&self) -> String {
         let r = self.rendered;
         let s = &r.statistics;
         let mut out = String::new();
-        let method = self.settings.method.name();
+        let method = self.method();
         let ended = match r.ended {
             Ended::Finished => "",
             Ended::GoodEnough => ", until its error was small enough",
@@ -344,6 +350,7 @@ impl Report<'_> {
             "version": env!("CARGO_PKG_VERSION"),
             "scene": self.scene,
             "integrator": method::describe(&self.settings.method),
+            "chosen": r.choice.map(plan_json::chosen),
             "width": film.width(),
             "height": film.height(),
             "seed": self.settings.seed,

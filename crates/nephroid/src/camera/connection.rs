@@ -55,19 +55,27 @@ impl CameraRays {
         let lens = self.to_world.point(origin);
         let way = lens - point;
         let distance = way.length();
-        let pixels_per_area = match self.projection {
-            Projection::Perspective { .. } | Projection::ThinLens { .. } => {
-                let (distance, depth) = (f64::from(distance), f64::from(local.z));
-                self.density * distance / (depth * depth * depth)
-            }
-            Projection::Orthographic => self.density,
-        };
         Some(Connection {
             film_position: self.film_position(q),
             lens,
             direction: way / distance,
-            pixels_per_area: pixels_per_area as f32,
+            pixels_per_area: self.pixels_per_area(local.z, distance),
         })
+    }
+
+    /// See [`Connection::pixels_per_area`]: of a point in front of the camera, seen from a point of its lens.
+    pub fn pixels_per_area_from(&self, lens: Vec3, point: Vec3) -> f32 {
+        self.pixels_per_area(self.from_world.point(point).z, point.distance(lens))
+    }
+
+    fn pixels_per_area(&self, depth: f32, distance: f32) -> f32 {
+        match self.projection {
+            Projection::Perspective { .. } | Projection::ThinLens { .. } => {
+                let (distance, depth) = (f64::from(distance), f64::from(depth));
+                (self.density * distance / (depth * depth * depth)) as f32
+            }
+            Projection::Orthographic => self.density as f32,
+        }
     }
 }
 

@@ -15,7 +15,9 @@ const LARGEST: f64 = 64.0;
 
 /// How far each step of a render was from the mean of those before, relative to the light and over the whole picture:
 ///
-///     q_n = mean over pixels of (x_n − ā_(n−1))² / d · W_(n−1)/W_n
+/// ```text
+/// q_n = mean over pixels of (x_n − ā_(n−1))² / d · W_(n−1)/W_n
+/// ```
 ///
 /// with the luminances x of the step, ā before it, d as for [`Quality`](super::Quality) and the weights W so far. Its mean
 /// is the squared error of one step. How much it jumps from one step to the next tells how much a squared error of
@@ -23,7 +25,9 @@ const LARGEST: f64 = 64.0;
 ///
 /// Whenever the film has a power of two of steps, it is also held against what it was at half of them:
 ///
-///     ρ = mean over pixels of (ā_m − ā_2m)² / d  over  mean of the variance of ā_2m / d
+/// ```text
+/// ρ = mean over pixels of (ā_m − ā_2m)² / d  over  mean of the variance of ā_2m / d
+/// ```
 ///
 /// is 1 if the halves are independent. Samples of a pixel that go on from one another are more evenly spread the more of
 /// them there are, and ρ is less.

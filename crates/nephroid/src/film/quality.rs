@@ -33,7 +33,9 @@ pub enum Pixels {
 
 /// How far a picture a is from the truth t:
 ///
-///     E = sqrt(mean over pixels of (a − t)² / (t² + (m/10)²))
+/// ```text
+/// E = sqrt(mean over pixels of (a − t)² / (t² + (m/10)²))
+/// ```
 ///
 /// with luminances, of which m is the mean over the picture. It is told from the render itself; see `docs/error.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]

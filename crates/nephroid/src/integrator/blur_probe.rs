@@ -46,6 +46,11 @@ impl Probe for BlurProbe {
         self.found[usize::from(is_direct)] += radiance - of_half;
     }
 
+    #[inline]
+    fn blur(&mut self, radiance: Rgb) {
+        self.sum += radiance;
+    }
+
     fn look_up(&mut self, look_up: &LookUp, _: Gathered) {
         let [other, direct] = std::mem::replace(&mut self.found, [Rgb::BLACK; 2]);
         for (part, found) in [(look_up.other, other), (look_up.direct, direct)] {

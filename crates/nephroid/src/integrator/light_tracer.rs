@@ -55,7 +55,7 @@ impl<'a> LightTracer<'a> {
     }
 
     /// What light paths bring in one step: as many as it has camera samples. `None` if the observer cancelled.
-    pub fn paths(&self, pass: &CameraPass, observer: &dyn Observer) -> Option<Brought> {
+    pub fn paths(&self, pass: &CameraPass, observer: &dyn Observer) -> Option<LightSplats> {
         let window = self.world.scene().film.window();
         let pixels = u64::from(window.width) * u64::from(window.height);
         let paths = pixels * u64::from(pass.samples);
@@ -67,24 +67,41 @@ impl<'a> LightTracer<'a> {
             max_depth: self.config.max_depth,
         };
         let splats = light_pass(self.world, &light, observer)?;
-        Some(Brought { splats, samples: pass.samples, paths })
+        Some(LightSplats { splats, samples: pass.samples, paths })
     }
 }
 
 /// What the light paths of one step brought.
-pub(crate) struct Brought {
+pub(crate) struct LightSplats {
     splats: Splats,
     samples: u32,
     paths: u64,
 }
 
-impl Brought {
+impl LightSplats {
+    pub fn brought(&self) -> Brought<'_> {
+        Brought::new(&self.splats, self.samples, self.paths)
+    }
+}
+
+/// What light paths brought to the camera, and how many there were of them and of the camera's samples of each pixel.
+pub(crate) struct Brought<'a> {
+    splats: &'a Splats,
+    samples: u32,
+    paths: u64,
+}
+
+impl<'a> Brought<'a> {
+    pub fn new(splats: &'a Splats, samples: u32, paths: u64) -> Self {
+        Self { splats, samples, paths }
+    }
+
     /// Joins it with the camera samples of the same step, pixel by pixel; those that have none stay without.
     ///
     /// With s samples of weights w that are 1 in the mean, Σ w·L / s and the mean over light paths are right in the
     /// mean each, so the sum of s times both has the weight s. A step is one estimate: its light paths are shared by
     /// all samples.
-    pub fn add_to<'a>(&self, pixels: impl Iterator<Item = &'a mut PixelSum>, total: &mut PictureSums) {
+    pub fn add_to<'p>(&self, pixels: impl Iterator<Item = &'p mut PixelSum>, total: &mut PictureSums) {
         let share = f64::from(self.samples) / self.paths.max(1) as f64;
         for (sum, brought) in pixels.zip(&self.splats.pixels) {
             if sum.samples > 0 {
@@ -94,7 +111,7 @@ impl Brought {
                 *sum = PixelSum { weight: f64::from(self.samples), ..*sum }.as_one_estimate();
             }
         }
-        let Splats { direct, caustic, global, medium, .. } = &self.splats;
+        let Splats { direct, caustic, global, medium, .. } = self.splats;
         let parts = [direct, caustic, global, medium];
         let [direct, caustic, global, medium] = parts.map(|part| part.map(|light| share * light));
         total.append(&PictureSums { direct, caustic, global, medium, ..PictureSums::default() });

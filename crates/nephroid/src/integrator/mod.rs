@@ -1,22 +1,28 @@
 //! Integrators: each a configuration and one iteration.
 
+pub(crate) mod auto;
 mod blur_probe;
+mod effort;
 mod light_tracer;
 mod path;
 mod photon_mapper;
 mod probe;
 pub(crate) mod progressive;
+pub(crate) mod vcm;
 
+pub use auto::{AutoConfig, Choice, Pick};
 pub(crate) use blur_probe::BlurProbe;
+pub(crate) use effort::Effort;
 pub use light_tracer::LightTracerConfig;
 pub(crate) use light_tracer::{Brought, LightTracer};
 pub use path::PathConfig;
 pub(crate) use path::PathTracer;
 pub use photon_mapper::{CameraPlan, DirectSource, FinalGather, PhotonMapperConfig, Show, VolumeEstimate};
 pub(crate) use photon_mapper::{Guides, Maps, PhotonMapper, Turn};
-pub(crate) use probe::{AovProbe, Estimator, LookUp, Met, Passed, Probe};
+pub(crate) use probe::{AovProbe, Estimator, Found, LookUp, Met, Passed, Probe};
 pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 pub use progressive::PpmConfig;
+pub use vcm::VcmConfig;
 
 use crate::color::Rgb;
 use crate::film::{Aov, Pixels};
@@ -28,6 +34,10 @@ pub enum Method {
     PhotonMapper(PhotonMapperConfig),
     /// Progressive photon mapping.
     Ppm(PpmConfig),
+    /// Vertex connection and merging.
+    Vcm(VcmConfig),
+    /// Whatever trials find best.
+    Auto(AutoConfig),
     /// Unbiased path tracing, the reference for surfaces and media.
     Path(PathConfig),
     /// Unbiased light tracing to the camera, the reference for caustics.
@@ -40,10 +50,17 @@ impl Method {
         match self {
             Self::PhotonMapper(_) => "photonmapper",
             Self::Ppm(_) => "ppm",
+            Self::Vcm(_) => "vcm",
+            Self::Auto(_) => "auto",
             Self::Path(config) if config.media => "volpath",
             Self::Path(_) => "path",
             Self::LightTracer(_) => "ptracer",
         }
+    }
+
+    /// Whether its iterations are planned, short, and one estimate each.
+    pub fn is_progressive(&self) -> bool {
+        matches!(self, Self::Ppm(_) | Self::Vcm(_) | Self::Auto(_))
     }
 
     /// How photons are traced and read, if it is a method that does.
@@ -51,6 +68,8 @@ impl Method {
         match self {
             Self::PhotonMapper(config) => Some(config),
             Self::Ppm(config) => Some(&config.mapper),
+            Self::Vcm(config) => Some(&config.mapper),
+            Self::Auto(config) => Some(&config.ppm.mapper),
             Self::Path(_) | Self::LightTracer(_) => None,
         }
     }
@@ -65,6 +84,14 @@ impl Method {
     pub fn pixels(&self) -> Pixels {
         if matches!(self, Self::Path(_)) { Pixels::Apart } else { Pixels::Together }
     }
+}
+
+/// What was emitted and stored of one map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MapTotals {
+    pub paths: u64,
+    pub photons: usize,
+    pub bytes: usize,
 }
 
 impl Default for Method {

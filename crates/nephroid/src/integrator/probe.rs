@@ -121,6 +121,19 @@ impl MediumLight {
     }
 }
 
+/// How light was found by a bidirectional method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// By a path from the camera that met a lamp.
+    Met,
+    /// By asking a lamp.
+    Asked,
+    /// By the connection to a light path.
+    Connected,
+    /// By a photon near by.
+    Merged,
+}
+
 /// A stretch of a ray that lies in one medium.
 pub(crate) struct Passed {
     pub medium: Option<Handle<Medium>>,
@@ -154,6 +167,11 @@ pub(crate) trait Probe {
     fn photon(&mut self, _photon: &Photon, _is_direct: bool, _radiance: Rgb, _of_half: Rgb) {}
     /// A look-up is done.
     fn look_up(&mut self, _look_up: &LookUp, _gathered: Gathered) {}
+    /// Photons that were merged with a path bring so much more than those within half of the squared radius would.
+    fn blur(&mut self, _radiance: Rgb) {}
+    /// One of several techniques found light. The densities of all of them are together so many times those of path
+    /// tracing: infinitely many where that cannot find it.
+    fn technique(&mut self, _name: Found, _radiance: Rgb, _over_paths: f32) {}
 }
 
 impl Probe for () {
@@ -197,6 +215,16 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     fn look_up(&mut self, look_up: &LookUp, gathered: Gathered) {
         self.0.look_up(look_up, gathered);
         self.1.look_up(look_up, gathered);
+    }
+
+    fn blur(&mut self, radiance: Rgb) {
+        self.0.blur(radiance);
+        self.1.blur(radiance);
+    }
+
+    fn technique(&mut self, name: Found, radiance: Rgb, over_paths: f32) {
+        self.0.technique(name, radiance, over_paths);
+        self.1.technique(name, radiance, over_paths);
     }
 }
 

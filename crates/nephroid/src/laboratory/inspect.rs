@@ -7,7 +7,7 @@ use crate::color::Rgb;
 use crate::film::{Aov, AovFilm, AovSample, AovSum, Film, FilterSampler, PixelSum};
 use crate::integrator::{
     Components, Estimator, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig,
-    PpmConfig, Turn,
+    PpmConfig, Turn, vcm,
 };
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -20,6 +20,8 @@ use crate::world::World;
 pub struct Inspector<'w> {
     world: &'w World,
     settings: RenderSettings,
+    /// What renders, which settings may leave open.
+    method: Method,
     pixel: (u32, u32),
     plan: RenderPlan,
     maps: Option<(Maps, [Catalogue; 4])>,
@@ -55,6 +57,7 @@ impl<'w> Inspector<'w> {
         let plan = RenderPlan::new(world, &settings, observer);
         Self {
             world,
+            method: plan.method(world, &settings.method),
             settings,
             pixel,
             plan,
@@ -80,8 +83,8 @@ impl<'w> Inspector<'w> {
         if self.samples >= whole {
             (self.iteration, self.samples, self.maps) = (self.iteration + 1, 0, None);
         }
-        let taken = samples_of_step(&self.settings.method, whole - self.samples);
-        match self.settings.method.clone() {
+        let taken = samples_of_step(&self.method, whole - self.samples);
+        match self.method.clone() {
             Method::PhotonMapper(config) | Method::Ppm(PpmConfig { mapper: config, .. }) => {
                 if self.maps.is_none() {
                     self.maps = self.build(&config, observer);
@@ -91,6 +94,18 @@ impl<'w> Inspector<'w> {
                 let mapper = PhotonMapper::new(self.world, &config, &maps, &guides, &self.plan.camera);
                 self.take(&mapper, Some(&catalogues), taken);
                 (self.maps, self.guides) = (Some((maps, catalogues)), Some(guides));
+            }
+            // It was settled when the render was planned.
+            Method::Auto(_) => return false,
+            Method::Vcm(config) => {
+                let RenderPlan { photons, camera, .. } = self.plan;
+                let number = vcm::IterationKey::new(self.settings.seed, self.iteration);
+                let (density, _) =
+                    vcm::density(self.world, &config, photons.global.paths, self.settings.seed, observer);
+                let iteration =
+                    vcm::Iteration::new(self.world, &config, &photons, &camera, &density, number, observer);
+                let Some(iteration) = iteration else { return false };
+                self.take(&iteration.camera(self.world, &config, &camera, &density), None, taken);
             }
             Method::Path(config) => {
                 self.take(&PathTracer { world: self.world, config: &config }, None, taken);
@@ -136,7 +151,7 @@ impl<'w> Inspector<'w> {
         observer: &dyn Observer,
     ) -> Option<(Maps, [Catalogue; 4])> {
         let (world, plan) = (self.world, self.plan);
-        let turn = Turn::new(&self.settings.method, &plan.camera, self.settings.seed, self.iteration);
+        let turn = Turn::new(&self.method, &plan.camera, self.settings.seed, self.iteration);
         let pass = photons::record(world, config, &plan.photons, &turn, observer)?;
         let (global, of_global) = Catalogue::build(pass.global, pass.global_paths);
         let (caustic, of_caustic) = Catalogue::build(pass.caustic, pass.caustic_paths);
@@ -144,7 +159,7 @@ impl<'w> Inspector<'w> {
         let (haze, of_haze) = Catalogue::build(pass.haze, pass.global_paths);
         let volumes = Maps::volumes(world, config, &plan.photons, &turn, observer)?;
         let maps = Maps::new([global, caustic, afterglow, haze], volumes, turn.blur, Ledger::default());
-        let (given, method) = (self.guides.take(), &self.settings.method);
+        let (given, method) = (self.guides.take(), &self.method);
         self.guides = Guides::of_turn(given, world, method, &maps, &turn, observer);
         Some((maps, [of_global, of_caustic, of_afterglow, of_haze]))
     }
@@ -181,7 +196,7 @@ impl<'w> Inspector<'w> {
             probe.finish(&mut report);
             self.inspected.push(report);
         }
-        if matches!(self.settings.method, Method::Ppm(_)) {
+        if self.method.is_progressive() {
             sum = sum.as_one_estimate();
         }
         self.film.add_iteration(&[sum]);

@@ -41,11 +41,12 @@ pub fn record_photons(
     iteration: u64,
     observer: &dyn Observer,
 ) -> Option<MapPhotons> {
-    let RenderPlan { photons: plan, camera } = RenderPlan::new(world, settings, observer);
-    let Some(config) = settings.method.mapper() else {
+    let render = RenderPlan::new(world, settings, observer);
+    let (plan, method) = (render.photons, render.method(world, &settings.method));
+    let Some(config) = method.mapper() else {
         return Some(MapPhotons { photons: Vec::new(), plan });
     };
-    let turn = Turn::new(&settings.method, &camera, settings.seed, iteration);
+    let turn = Turn::new(&method, &render.camera, settings.seed, iteration);
     let pass = record(world, config, &plan, &turn, observer)?;
     let (walks, targets) = (config.walk_settings(), config.targets());
     let media = record_volume_pass(world, &walks, &plan, &targets, turn.seed, iteration, observer)?;

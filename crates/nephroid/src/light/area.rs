@@ -41,6 +41,11 @@ impl AreaEmitter {
         textures.mean(self.radiance) * (PI * self.area)
     }
 
+    /// The radiance that a point of it gives off.
+    pub fn radiance(&self, textures: &Textures, point: &SurfacePoint) -> Rgb {
+        textures.eval(self.radiance, point.uv)
+    }
+
     /// The largest radiance that is seen of it, of any channel.
     pub fn brightest(&self, textures: &Textures) -> f32 {
         textures.brightest(self.radiance)

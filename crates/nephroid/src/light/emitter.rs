@@ -223,6 +223,11 @@ impl Emitter {
         }
     }
 
+    /// Radiance that a point of its surface gives off on its side, if it is one that has points.
+    pub fn surface_radiance(&self, textures: &Textures, point: &SurfacePoint) -> Option<Rgb> {
+        if let EmitterKind::Area(area) = &self.kind { Some(area.radiance(textures, point)) } else { None }
+    }
+
     /// The largest radiance that cameras see of its surface or sky, of any channel; 0 if it has neither.
     pub fn brightest(&self, textures: &Textures) -> f32 {
         match &self.kind {

@@ -23,7 +23,7 @@ impl Exposed {
     }
 
     /// Adds what light paths brought.
-    pub fn add(&mut self, light: &Brought) {
+    pub fn add(&mut self, light: &Brought<'_>) {
         match self {
             Self::Picture(exposure) => light.add_to(exposure.sums.iter_mut(), &mut exposure.total),
             Self::WithAovs(exposure) => {

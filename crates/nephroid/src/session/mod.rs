@@ -15,6 +15,7 @@ use crate::film::{Aov, AovFilm, Film, MergeError};
 pub use crate::film::{Convergence, Quality};
 use crate::integrator::{
     CameraPlan, Guides, LightTracer, Maps, Method, PathTracer, PhotonMapper, PhotonMapperConfig, Turn,
+    VcmConfig, vcm,
 };
 use crate::observer::Observer;
 use crate::transport::{CameraPass, Ledger};
@@ -26,7 +27,7 @@ const STEP_SAMPLES: u32 = 4;
 /// Camera samples of each pixel in the next step of an iteration that has so many left to take. Those of a progressive
 /// iteration share photons and are few, and so they are one step and one estimate.
 pub(crate) fn samples_of_step(method: &Method, left: u32) -> u32 {
-    if matches!(method, Method::Ppm(_)) { left } else { STEP_SAMPLES.min(left) }
+    if method.is_progressive() { left } else { STEP_SAMPLES.min(left) }
 }
 
 /// The samples of a step. Those of progressive iterations are numbered through all of them: they are as well spread as
@@ -37,9 +38,10 @@ pub(crate) fn camera_pass_of(
     place: Place,
     samples: u32,
 ) -> CameraPass {
-    let (iteration, first_sample) = match settings.method {
-        Method::Ppm(_) => (0, place.samples_before(camera.samples_per_pixel)),
-        _ => (place.iteration, u64::from(place.samples)),
+    let (iteration, first_sample) = if settings.method.is_progressive() {
+        (0, place.samples_before(camera.samples_per_pixel))
+    } else {
+        (place.iteration, u64::from(place.samples))
     };
     CameraPass { seed: settings.seed, iteration, first_sample, samples }
 }
@@ -60,6 +62,8 @@ pub struct Session<'w> {
     world: &'w World,
     settings: RenderSettings,
     plan: RenderPlan,
+    /// What renders, which settings may leave open.
+    method: Method,
     film: Film,
     convergence: Convergence,
     aovs: Option<AovFilm>,
@@ -67,6 +71,7 @@ pub struct Session<'w> {
     torn: Option<Exposed>,
     maps: Option<Maps>,
     guides: Option<Guides>,
+    density: Option<vcm::Density>,
     ledger: Ledger,
     place: Place,
     statistics: Statistics,
@@ -84,6 +89,7 @@ impl<'w> Session<'w> {
         let window = world.scene().film.window();
         Self {
             world,
+            method: plan.method(world, &settings.method),
             settings,
             plan,
             film: Film::with_unit(window.width, window.height, world.radiance_unit()),
@@ -92,6 +98,7 @@ impl<'w> Session<'w> {
             torn: None,
             maps: None,
             guides: None,
+            density: None,
             ledger: Ledger::default(),
             place: Place::default(),
             statistics: Statistics { plan, ..Statistics::default() },
@@ -141,11 +148,14 @@ impl<'w> Session<'w> {
         if self.place.samples >= whole {
             (self.place, self.maps) = (Place { iteration: self.place.iteration + 1, samples: 0 }, None);
         }
-        let samples = samples_of_step(&self.settings.method, whole - self.place.samples);
+        let samples = samples_of_step(&self.method, whole - self.place.samples);
         let pass = camera_pass_of(&self.settings, &self.plan.camera, self.place, samples);
-        let done = match self.settings.method.clone() {
+        let done = match self.method.clone() {
             Method::PhotonMapper(config) => self.photon_step(&config, &pass, observer),
             Method::Ppm(config) => self.photon_step(&config.mapper, &pass, observer),
+            Method::Vcm(config) => self.vcm_step(&config, &pass, observer),
+            // It was settled when the render was planned.
+            Method::Auto(_) => return false,
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
                 let exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
@@ -155,7 +165,7 @@ impl<'w> Session<'w> {
                 let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
                 let mut exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
-                exposed.add(&light);
+                exposed.add(&light.brought());
                 self.take(exposed)
             }
         };
@@ -215,6 +225,11 @@ impl<'w> Session<'w> {
         &self.settings
     }
 
+    /// The integrator that renders: that of the settings, or what they leave to be chosen.
+    pub fn method(&self) -> &Method {
+        &self.method
+    }
+
     /// What it does in each iteration.
     pub fn plan(&self) -> &RenderPlan {
         &self.plan
@@ -228,21 +243,40 @@ impl<'w> Session<'w> {
     ) -> bool {
         let (world, plan) = (self.world, self.plan);
         if self.maps.is_none() {
-            let turn = Turn::new(&self.settings.method, &plan.camera, pass.seed, self.place.iteration);
+            let turn = Turn::new(&self.method, &plan.camera, pass.seed, self.place.iteration);
             let Some(maps) = Maps::build(world, config, &plan.photons, &turn, observer) else { return false };
             self.statistics.count(&maps, &mut self.ledger);
             let given = self.guides.take();
-            let method = &self.settings.method;
+            let method = &self.method;
             self.guides = Guides::of_turn(given, world, method, &maps, &turn, observer);
             self.maps = Some(maps);
         }
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
         let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
-        let progressive = matches!(self.settings.method, Method::Ppm(_));
+        let progressive = self.method.is_progressive();
         let mut exposed = expose(world, &mapper, pass, (self.aovs.is_some(), progressive), observer);
         if progressive {
             exposed.count_as_one_estimate();
         }
+        self.take(exposed)
+    }
+
+    fn vcm_step(&mut self, config: &VcmConfig, pass: &CameraPass, observer: &dyn Observer) -> bool {
+        let (world, plan) = (self.world, self.plan);
+        let number = vcm::IterationKey::new(pass.seed, self.place.iteration);
+        let density = match self.density.take() {
+            Some(density) => density,
+            None => vcm::density(world, config, plan.photons.global.paths, pass.seed, observer).0,
+        };
+        let density = &*self.density.insert(density);
+        let iteration =
+            vcm::Iteration::new(world, config, &plan.photons, &plan.camera, density, number, observer);
+        let Some(iteration) = iteration else { return false };
+        self.statistics.count_paths(&iteration.totals(), iteration.ledger(), &mut self.ledger);
+        self.statistics.count_volumes(iteration.maps());
+        let camera = iteration.camera(world, config, &plan.camera, density);
+        let mut exposed = expose(world, &camera, pass, (self.aovs.is_some(), true), observer);
+        exposed.add(&iteration.brought(pass.samples));
         self.take(exposed)
     }
 
@@ -252,7 +286,7 @@ impl<'w> Session<'w> {
         if complete {
             self.statistics.picture.append(total);
             exposed.add_to(&mut self.film, self.aovs.as_mut());
-            exposed.compare(&mut self.film, &mut self.convergence, self.settings.method.pixels());
+            exposed.compare(&mut self.film, &mut self.convergence, self.method.pixels());
         } else {
             self.torn = Some(exposed);
         }

@@ -1,7 +1,7 @@
 //! What a render decides before its first iteration.
 
 use super::RenderSettings;
-use crate::integrator::{CameraPlan, Method, progressive};
+use crate::integrator::{CameraPlan, Choice, Method, auto, progressive, vcm};
 use crate::observer::{Observer, Phase, Work};
 use crate::transport::PhotonPlan;
 use crate::world::World;
@@ -14,6 +14,8 @@ pub struct RenderPlan {
     pub photons: PhotonPlan,
     /// Camera samples.
     pub camera: CameraPlan,
+    /// What renders, if that was to be found.
+    pub choice: Option<Choice>,
 }
 
 impl RenderPlan {
@@ -26,16 +28,37 @@ impl RenderPlan {
                 Self {
                     photons: PhotonPlan::by_pilot(world, &walk, &targets, settings.seed),
                     camera: config.camera_plan(settings.samples_per_pixel),
+                    choice: None,
                 }
             }
             Method::Ppm(config) => {
                 let _work = Work::begin(observer, Phase::Pilot, 1);
-                let (photons, camera) = progressive::plan(world, config, settings.seed, observer);
-                Self { photons, camera }
+                let (photons, camera, _) = progressive::plan(world, config, settings.seed, observer);
+                Self { photons, camera, choice: None }
+            }
+            Method::Vcm(config) => {
+                let _work = Work::begin(observer, Phase::Pilot, 1);
+                let (photons, camera) = vcm::plan(world, config, settings.seed, observer);
+                Self { photons, camera, choice: None }
+            }
+            Method::Auto(config) => {
+                let _work = Work::begin(observer, Phase::Pilot, 1);
+                let (photons, camera, choice) = auto::plan(world, config, settings.seed, observer);
+                Self { photons, camera, choice: Some(choice) }
             }
             Method::Path(_) | Method::LightTracer(_) => {
-                Self { photons: PhotonPlan::default(), camera: CameraPlan::plain(settings.samples_per_pixel) }
+                let camera = CameraPlan::plain(settings.samples_per_pixel);
+                Self { photons: PhotonPlan::default(), camera, choice: None }
             }
+        }
+    }
+
+    /// The integrator that renders where this one was asked for.
+    pub(crate) fn method(&self, world: &World, asked: &Method) -> Method {
+        match (asked, &self.choice) {
+            (Method::Auto(config), Some(choice)) => choice.method(world, config),
+            (Method::Auto(config), None) => Method::Ppm(config.ppm.clone()),
+            _ => asked.clone(),
         }
     }
 }

@@ -7,13 +7,13 @@ impl Session<'_> {
     /// The error of the picture so far. `None` while there are too few estimates to tell, and for methods that
     /// [do not tell](crate::integrator::Method::tells_error).
     pub fn quality(&self) -> Option<Quality> {
-        let method = &self.settings.method;
+        let method = &self.method;
         method.tells_error().then(|| Quality::of(&self.film, &self.convergence, method.pixels())).flatten()
     }
 
     /// The relative error of each pixel, row by row, whose mean square is that of [`Self::quality`].
     pub fn error_image(&self) -> Option<Vec<f32>> {
-        let method = &self.settings.method;
+        let method = &self.method;
         let tells = method.tells_error();
         tells.then(|| Quality::of_pixels(&self.film, &self.convergence, method.pixels())).flatten()
     }

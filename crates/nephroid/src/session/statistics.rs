@@ -1,7 +1,7 @@
 //! What a render did so far.
 
 use super::RenderPlan;
-use crate::integrator::{Maps, PictureSums};
+use crate::integrator::{MapTotals, Maps, PictureSums};
 use crate::transport::Ledger;
 
 /// What a render did so far.
@@ -45,13 +45,28 @@ impl Statistics {
         for (numbers, map) in [(&mut self.global, &maps.global), (&mut self.caustic, &maps.caustic)] {
             numbers.add(map.emitted(), map.len(), map.memory_bytes());
         }
+        self.count_volumes(maps);
+        self.add_ledger(&maps.ledger, ledger);
+    }
+
+    /// Takes new maps of light in media in.
+    pub(super) fn count_volumes(&mut self, maps: &Maps) {
         for (numbers, map) in [&mut self.volume, &mut self.volume_caustic].into_iter().zip(&maps.volumes) {
             numbers.add(map.emitted(), map.len(), map.memory_bytes());
         }
+    }
+
+    /// Takes new light paths in, which are counted as a global map's.
+    pub(super) fn count_paths(&mut self, new: &MapTotals, books: &Ledger, ledger: &mut Ledger) {
+        self.global.add(new.paths, new.photons, new.bytes);
+        self.add_ledger(books, ledger);
+    }
+
+    fn add_ledger(&mut self, books: &Ledger, ledger: &mut Ledger) {
         if ledger.lights.is_empty() {
-            *ledger = Ledger::new(maps.ledger.lights.len());
+            *ledger = Ledger::new(books.lights.len());
         }
-        ledger.append(&maps.ledger);
+        ledger.append(books);
         self.ledger = ledger.per_path();
     }
 }

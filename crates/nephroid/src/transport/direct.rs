@@ -55,7 +55,7 @@ impl<'a> Lit<'a> {
     }
 
     /// What is scattered towards `wo` of the radiance from `wi`, per solid angle: f·cos, or the phase function.
-    fn eval(&self, wi: Vec3) -> Rgb {
+    pub fn eval(&self, wi: Vec3) -> Rgb {
         match self.scatterer {
             Scatterer::Surface { bsdf, .. } => bsdf.eval(self.wo, wi) * bsdf.cosine(wi),
             Scatterer::Medium { phase, .. } => Rgb::splat(phase.eval(self.wo, wi)),
@@ -70,10 +70,16 @@ impl<'a> Lit<'a> {
         }
     }
 
-    fn pdf(&self, wi: Vec3) -> f32 {
+    /// The density of `wi` per solid angle, Dirac lobes aside.
+    pub fn pdf(&self, wi: Vec3) -> f32 {
+        self.pdf_between(self.wo, wi)
+    }
+
+    /// The same for a path that comes from another side.
+    pub fn pdf_between(&self, wo: Vec3, wi: Vec3) -> f32 {
         match self.scatterer {
-            Scatterer::Surface { bsdf, .. } => bsdf.pdf(self.wo, wi),
-            Scatterer::Medium { phase, .. } => phase.eval(self.wo, wi),
+            Scatterer::Surface { bsdf, .. } => bsdf.pdf(wo, wi),
+            Scatterer::Medium { phase, .. } => phase.eval(wo, wi),
         }
     }
 
@@ -218,7 +224,8 @@ pub(crate) fn sky_by_bsdf(world: &World, direction: Vec3, pdf_bsdf: f32, lights:
         .sum()
 }
 
-fn choice(world: &World, light: usize, lights: DirectLights) -> f32 {
+/// The probability with which next event estimation asks a light.
+pub(crate) fn choice(world: &World, light: usize, lights: DirectLights) -> f32 {
     match (lights, world.lights_for_direct()) {
         (DirectLights::One, Some(table)) => table.pmf(light),
         _ => 1.0,

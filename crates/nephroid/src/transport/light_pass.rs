@@ -63,8 +63,8 @@ impl Splats {
     }
 
     /// Adds connections in their order, each to all pixels whose filter covers it.
-    fn add(&mut self, connections: &[Vec<Connection>], splatter: &Splatter) {
-        for connection in connections.iter().flatten() {
+    fn add(&mut self, connections: &[Connection], splatter: &Splatter) {
+        for connection in connections {
             let part = match connection.part {
                 Part::Medium => &mut self.medium,
                 Part::Surface(PhotonKind::Direct) => &mut self.direct,
@@ -85,15 +85,16 @@ impl Splats {
 
 /// What one vertex brings to the film. It is spread over the pixels when it is joined, for a filter covers many.
 #[derive(Clone, Copy, Debug)]
-struct Connection {
-    film_position: Vec2,
-    light: Rgb,
-    part: Part,
+pub(crate) struct Connection {
+    /// In pixels of the whole picture.
+    pub film_position: Vec2,
+    pub light: Rgb,
+    pub part: Part,
 }
 
 /// Where the last vertex of a path lies, and how light came there.
 #[derive(Clone, Copy, Debug)]
-enum Part {
+pub(crate) enum Part {
     Surface(PhotonKind),
     Medium,
 }
@@ -103,37 +104,58 @@ enum Part {
 pub(crate) fn light_pass(world: &World, pass: &LightPass, observer: &dyn Observer) -> Option<Splats> {
     let film = &world.scene().film;
     let (window, splatter) = (film.window(), Splatter::new(film));
-    let mut splats = Splats::new(window.width as usize * window.height as usize);
     // A path that has one more segment to the camera.
     let shorter = pass.max_depth.map(|max| max.saturating_sub(1));
     if shorter == Some(0) {
-        return Some(splats);
+        return Some(Splats::new(window.width as usize * window.height as usize));
     }
     let settings = WalkSettings { max_photon_depth: shorter, ..WalkSettings::default() };
-    let work = Work::begin(observer, Phase::Photons, pass.paths);
+    splat(world, pass.paths, observer, |range| (trace(world, &settings, pass, &splatter, range), ()), |()| {})
+}
+
+/// Traces paths piece by piece and adds what each connects to the camera, in the order of the paths, with whatever else
+/// the pieces bring given to `keep` in the same order. `None` if the observer cancelled.
+pub(crate) fn splat<T: Send>(
+    world: &World,
+    paths: u64,
+    observer: &dyn Observer,
+    trace: impl Fn(Range<u64>) -> (Vec<Connection>, T) + Sync,
+    mut keep: impl FnMut(T) + Send,
+) -> Option<Splats> {
+    let film = &world.scene().film;
+    let (window, splatter) = (film.window(), Splatter::new(film));
+    let mut splats = Splats::new(window.width as usize * window.height as usize);
+    let work = Work::begin(observer, Phase::Photons, paths);
     let trace = |chunk: u64| {
-        if work.cancelled() {
-            return Vec::new();
-        }
-        let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(pass.paths);
-        work.advance(range.end - range.start);
-        trace(world, &settings, pass, &splatter, range)
-    };
-    let chunks = pass.paths.div_ceil(CHUNK);
-    let (mut first, mut size, mut before) = (0, *BATCH.start(), Vec::new());
-    while first < chunks {
-        let end = (first + size).min(chunks);
-        let done: Vec<Vec<Connection>> = std::mem::take(&mut before);
-        // A batch is joined while the next is traced.
-        let batch = || (first..end).into_par_iter().map(trace).collect();
-        (before, ()) = rayon::join(batch, || splats.add(&done, &splatter));
         if work.cancelled() {
             return None;
         }
-        size = next_batch(end - first, before.iter().map(|connections| connections.len() as u64).sum());
+        let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(paths);
+        work.advance(range.end - range.start);
+        Some(trace(range))
+    };
+    let mut join = |done: Vec<Option<(Vec<Connection>, T)>>| {
+        for (connections, more) in done.into_iter().flatten() {
+            splats.add(&connections, &splatter);
+            keep(more);
+        }
+    };
+    let chunks = paths.div_ceil(CHUNK);
+    let (mut first, mut size, mut before) = (0, *BATCH.start(), Vec::new());
+    while first < chunks {
+        let end = (first + size).min(chunks);
+        let done = std::mem::take(&mut before);
+        // A batch is joined while the next is traced.
+        let batch = || (first..end).into_par_iter().map(trace).collect();
+        (before, ()) = rayon::join(batch, || join(done));
+        if work.cancelled() {
+            return None;
+        }
+        let connections = before.iter().flatten().map(|(connections, _)| connections.len() as u64).sum();
+        size = next_batch(end - first, connections);
         first = end;
     }
-    splats.add(&before, &splatter);
+    join(before);
     Some(splats)
 }
 
@@ -162,7 +184,7 @@ fn trace(
             let (vertex, power, part) = match event {
                 Event::Surface(photon, vertex) => (vertex, photon.power, Part::Surface(kind)),
                 Event::Collision(photon, vertex) => (vertex, photon.power, Part::Medium),
-                Event::Way(_) | Event::Specular => return Next::Continue,
+                Event::Start(_) | Event::Way(_) | Event::Bounce(..) => return Next::Continue,
             };
             if let Some((film_position, light)) = connect(world, vertex, power, splatter, &mut connections) {
                 found.push(Connection { film_position, light, part });
@@ -259,7 +281,7 @@ mod tests {
         // Three batches, the last of them short.
         let paths = 6 * 16 * CHUNK + 3;
         let mut expected = Splats::new(256);
-        expected.add(&[connections(&world, paths)], &splatter);
+        expected.add(&connections(&world, paths), &splatter);
         assert!(expected.medium[1] > 0.0);
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");

@@ -57,7 +57,7 @@ pub fn photon_pass(
 ) -> Option<PhotonPass> {
     let record = |(): &mut (), _, event: Event<'_>| match event {
         Event::Surface(photon, _) => Some(photon),
-        Event::Collision(..) | Event::Way(_) | Event::Specular => None,
+        Event::Start(_) | Event::Collision(..) | Event::Way(_) | Event::Bounce(..) => None,
     };
     let pass = photon_pass_with(world, settings, plan, extras, seed, iteration, observer, record)?;
     Some(PhotonPass {
@@ -85,7 +85,7 @@ pub fn volume_pass(
         VolumeKind::Points => {
             let record = |(): &mut (), _, event: Event<'_>| match event {
                 Event::Collision(photon, _) => Some(photon),
-                Event::Surface(..) | Event::Way(_) | Event::Specular => None,
+                Event::Start(_) | Event::Surface(..) | Event::Way(_) | Event::Bounce(..) => None,
             };
             let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
             let [all, caustics] = lists;
@@ -97,7 +97,7 @@ pub fn volume_pass(
         VolumeKind::Beams => {
             let record = |(): &mut (), _, event: Event<'_>| match event {
                 Event::Way(beam) => Some(beam),
-                Event::Surface(..) | Event::Collision(..) | Event::Specular => None,
+                Event::Start(_) | Event::Surface(..) | Event::Collision(..) | Event::Bounce(..) => None,
             };
             let lists = volume_pass_with(world, settings, plan, targets, seed, iteration, observer, record)?;
             let [all, caustics] = lists;
@@ -176,7 +176,7 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
     let caustic_job = job(MapKind::Caustic, plan.caustic.paths, caustic_key);
     let ([caustic, afterglow], _) = emit(&caustic_job, |state, path, event, kind| {
         let (lists, next) = match (&event, kind) {
-            (Event::Way(_) | Event::Specular, _) => ([false, false], Next::Continue),
+            (Event::Start(_) | Event::Way(_) | Event::Bounce(..), _) => ([false, false], Next::Continue),
             // Whatever follows is the global map's.
             (Event::Collision(..), _) => ([false, false], Next::Stop),
             (_, PhotonKind::Caustic) => ([true, false], beyond),

@@ -199,7 +199,7 @@ fn tried(map: MapKind, targets: &PhotonTargets, event: &Event<'_>, kind: PhotonK
         MapKind::Caustic => match event {
             Event::Surface(..) => (kind == PhotonKind::Caustic, Next::Stop),
             Event::Collision(..) => (false, Next::Stop),
-            Event::Way(_) | Event::Specular => (false, Next::Continue),
+            Event::Start(_) | Event::Way(_) | Event::Bounce(..) => (false, Next::Continue),
         },
         MapKind::Volume | MapKind::VolumeCaustic => stored_in_volume(map, targets, event, kind),
     }
@@ -213,7 +213,7 @@ pub(super) fn stored_in_volume(
     kind: PhotonKind,
 ) -> (bool, Next) {
     let fits = match event {
-        Event::Surface(..) | Event::Specular => false,
+        Event::Start(_) | Event::Surface(..) | Event::Bounce(..) => false,
         Event::Collision(..) => targets.volume_kind == VolumeKind::Points,
         Event::Way(_) => targets.volume_kind == VolumeKind::Beams,
     };
@@ -228,7 +228,7 @@ pub(super) fn stored_in_volume(
         // Whatever follows a surface that is not specular, or a collision, is no caustic.
         (Event::Surface(..), _) => (false, Next::Stop),
         (Event::Collision(..), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
-        (Event::Specular, _) => (false, Next::Continue),
+        (Event::Start(_) | Event::Bounce(..), _) => (false, Next::Continue),
         (Event::Way(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Continue),
     }
 }

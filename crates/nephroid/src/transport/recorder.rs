@@ -123,11 +123,11 @@ impl Trail {
         match event {
             Event::Surface(..) => self.meet(Some('D')),
             Event::Collision(..) => self.meet(Some('V')),
-            Event::Specular => {
+            Event::Bounce(_, bounce) if bounce.dirac => {
                 self.meet(None);
                 self.bounces.push('S');
             }
-            Event::Way(_) => {}
+            Event::Start(_) | Event::Way(_) | Event::Bounce(..) => {}
         }
     }
 }

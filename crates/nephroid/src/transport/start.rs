@@ -6,19 +6,23 @@ use crate::color::Rgb;
 use crate::light::{EmissionNumbers, SphereSampling};
 use crate::math::{Ray, Vec2, Vec3, warp};
 use crate::sampling::Sampler;
+use crate::shape::SurfacePoint;
 use crate::world::{Surroundings, World, leave};
 
 /// The start of a path.
-pub(super) struct Start {
+#[derive(Debug)]
+pub(crate) struct Start {
     pub light: usize,
     pub ray: Ray,
+    /// The point of a surface that it leaves.
+    pub surface: Option<SurfacePoint>,
     /// W, as if the path were alone. Black if nothing starts.
     pub power: Rgb,
     /// What it stands for of all the light that is given off, in W.
     pub emitted: Rgb,
     /// What it starts in.
     pub inside: Surroundings,
-    pub history: History,
+    pub(super) history: History,
 }
 
 /// Starts path `path`; `None` if there is no light.
@@ -61,7 +65,8 @@ pub(super) fn start(
         let (inside, glow) = found.unwrap_or_default();
         let power = emission.power * glow / probability;
         let history = History::from_medium();
-        return Some(Start { light, ray: emission.ray, power, emitted: power, inside, history });
+        let (ray, surface) = (emission.ray, None);
+        return Some(Start { light, ray, surface, power, emitted: power, inside, history });
     }
     let ray = match emission.surface {
         Some(point) => leave(&point, emission.ray.direction),
@@ -75,7 +80,7 @@ pub(super) fn start(
     };
     let (power, emitted) = (power / probability, emission.emitted / probability);
     let (inside, history) = (world.light_surroundings(light), History::default());
-    Some(Start { light, ray, power, emitted, inside, history })
+    Some(Start { light, ray, surface: emission.surface, power, emitted, inside, history })
 }
 
 /// Keeps photons that carry much less than others of their light with so much lower a probability,

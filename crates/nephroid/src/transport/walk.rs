@@ -7,9 +7,9 @@ use super::roulette::survival;
 use super::start::{Start, start};
 use crate::color::Rgb;
 use crate::light::SphereSampling;
-use crate::material::{Bsdf, Transport, segments_by};
-use crate::math::Ray;
-use crate::medium::{Matter, Passage};
+use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
+use crate::math::{Ray, Vec3};
+use crate::medium::{Matter, Passage, PhaseSample};
 use crate::photon_map::{Beam, Photon, VolumePhoton};
 use crate::sampling::Sampler;
 use crate::world::{Hit, Surroundings, World, leave};
@@ -65,7 +65,7 @@ impl Default for WalkSettings {
 
 /// The map that paths are traced for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MapKind {
+pub(crate) enum MapKind {
     /// All light on surfaces.
     Global,
     /// Light on surfaces that meets a specular one first.
@@ -78,7 +78,7 @@ pub(super) enum MapKind {
 
 /// How a walk goes on after a photon has been shown to its visitor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Next {
+pub(crate) enum Next {
     Continue,
     Stop,
 }
@@ -86,15 +86,26 @@ pub(super) enum Next {
 /// What a walk shows its visitor. Photons come with the vertex of the path where they are; its `wo` points back along
 /// their flight.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Event<'a> {
+pub(crate) enum Event<'a> {
+    /// Light leaves a lamp.
+    Start(&'a Start),
     /// A photon on a surface with a density to estimate.
     Surface(Photon, &'a Lit<'a>),
     /// The power that is scattered at a collision.
     Collision(VolumePhoton, &'a Lit<'a>),
     /// A stretch of the way through a medium.
     Way(Beam),
-    /// A bounce at a specular surface.
-    Specular,
+    /// Where and how the path goes on, at a surface or a collision.
+    Bounce(&'a Lit<'a>, Bounce),
+}
+
+/// The direction that a path takes at one of its vertices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounce {
+    pub wi: Vec3,
+    /// Of `wi`; 0 for a Dirac lobe.
+    pub pdf_solid_angle: f32,
+    pub dirac: bool,
 }
 
 /// A photon on its way.
@@ -134,7 +145,7 @@ impl Walker {
 /// Walks photon path `path`, showing every photon that lands on a surface with a density to
 /// estimate, or collides in a medium, to `visit`, and books where the power goes with the light it came from.
 /// What `map` has no use for, from the start on, may be left out.
-pub(super) fn walk(
+pub(crate) fn walk(
     world: &World,
     settings: &WalkSettings,
     map: MapKind,
@@ -146,11 +157,15 @@ pub(super) fn walk(
     let Some(start) = start(world, settings, map, path, sampler) else {
         return;
     };
-    let Start { light, ray, power, emitted, inside, history } = start;
+    let Start { light, ray, power, emitted, inside, history, .. } = start;
     let book = &mut books[light];
     book.emit(emitted);
     book.escape(emitted - power);
     if power.is_black() {
+        return;
+    }
+    if visit(Event::Start(&start), history.kind()) == Next::Stop {
+        book.end(power);
         return;
     }
     let roulette = [0.0; 3];
@@ -245,9 +260,9 @@ fn step(
     if !walker.survives(scattered, u_survive) {
         return Next::Stop;
     }
-    if sample.dirac {
-        visit(Event::Specular, walker.history.kind());
-    }
+    let vertex = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walker.inside };
+    let BsdfSample { wi, pdf_solid_angle, dirac, .. } = sample;
+    visit(Event::Bounce(&vertex, Bounce { wi, pdf_solid_angle, dirac }), walker.history.kind());
     if segments_by(wo, sample.wi) == 0 {
         walker.history.pass();
     } else {
@@ -317,8 +332,10 @@ fn collide(
     if !walker.survives(scattered, u_survive) {
         return Next::Stop;
     }
+    let PhaseSample { wi, pdf_solid_angle } = matter.phase().sample(wo, u);
+    visit(Event::Bounce(&vertex, Bounce { wi, pdf_solid_angle, dirac: false }), kind);
     walker.history.collide();
-    walker.ray = Ray::new(position, matter.phase().sample(wo, u).wi);
+    walker.ray = Ray::new(position, wi);
     Next::Continue
 }
 

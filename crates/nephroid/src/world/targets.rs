@@ -45,6 +45,8 @@ pub(crate) struct Aim {
     pub selective: bool,
     /// Lights by what they send to the targets.
     pub lights: Discrete,
+    /// For each light the power that it sends to the targets, in W, as trials found it.
+    pub sent: Vec<f32>,
     /// For each light the mean power of its photons, in W, each counted for its power.
     pub levels: Vec<f32>,
 }
@@ -86,11 +88,13 @@ impl Aims {
 impl Aim {
     /// `None` if there is no light.
     fn new(emitters: &[Emitter], lookup: Lookup<'_>, targets: Targets, selective: bool) -> Option<Self> {
-        let mut aim = Self { targets, selective, lights: Discrete::new([1.0])?, levels: Vec::new() };
+        let mut aim =
+            Self { targets, selective, lights: Discrete::new([1.0])?, sent: Vec::new(), levels: Vec::new() };
         let mut aimed = Vec::with_capacity(emitters.len());
         for (i, emitter) in (0..).zip(emitters) {
             let (mean, level) = aim.power_of(emitter, lookup, i, emitters.len());
             aimed.push(mean);
+            aim.sent.push(mean as f32);
             aim.levels.push(level);
         }
         let power = |e: &Emitter| f64::from(e.power.mean());

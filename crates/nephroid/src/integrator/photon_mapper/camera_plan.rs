@@ -1,5 +1,5 @@
 /// The camera samples of an iteration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraPlan {
     /// Of each pixel.
     pub samples_per_pixel: u32,
@@ -9,12 +9,21 @@ pub struct CameraPlan {
     pub gather_rays: Option<u32>,
     /// Photons of an estimate from the global and from the caustic map.
     pub neighbours: [u32; 2],
+    /// The radius within which photons are merged with camera paths in the first iteration, where they are, behind the first
+    /// surface that is not specular.
+    pub merging_radius: f32,
 }
 
 impl CameraPlan {
     /// Samples that have no photon maps to read.
     pub(crate) fn plain(samples_per_pixel: u32) -> Self {
-        Self { samples_per_pixel: samples_per_pixel.max(1), stride: 1, gather_rays: None, neighbours: [2; 2] }
+        Self {
+            samples_per_pixel: samples_per_pixel.max(1),
+            stride: 1,
+            gather_rays: None,
+            neighbours: [2; 2],
+            merging_radius: 0.0,
+        }
     }
 }
 

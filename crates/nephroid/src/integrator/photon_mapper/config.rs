@@ -220,6 +220,7 @@ impl PhotonMapperConfig {
             stride,
             gather_rays: self.gather_rays(samples_per_pixel / stride),
             neighbours: [self.neighbours; 2],
+            merging_radius: 0.0,
         }
     }
 

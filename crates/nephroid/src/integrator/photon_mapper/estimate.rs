@@ -151,6 +151,26 @@ impl<'a> PhotonMapper<'a> {
         }
     }
 
+    /// The radiance that a medium adds to a camera ray from its way to `end`, after so many segments up to there, and
+    /// the share of what lies behind that comes through. `open` tells at which ends nothing but the medium ends.
+    #[expect(clippy::too_many_arguments, reason = "the state of a path")]
+    pub fn medium_ahead<P: Probe>(
+        &self,
+        ray: &Ray,
+        end: f32,
+        inside: Surroundings,
+        depth: u32,
+        open: [bool; 2],
+        sampler: &mut Sampler,
+        neighbors: &mut NearestList,
+        probe: &mut P,
+    ) -> (Rgb, Rgb) {
+        let Some(matter) = self.world.matter(inside) else { return (Rgb::BLACK, Rgb::WHITE) };
+        let segment = Segment { ray, end, matter, inside, depth, open };
+        let mut tools = Tools { neighbors, profile: Profile::default(), probe };
+        self.through_medium(&segment, 1, sampler, &mut tools)
+    }
+
     fn fits(&self, depth: u32) -> bool {
         self.config.max_depth.is_none_or(|max| depth <= max)
     }

@@ -1,11 +1,16 @@
 //! From what trials found to what each iteration does: work goes where it takes most of the error away.
 
 use super::trial::{PARTS, PixelTrial, SAMPLES, SETS};
+use crate::integrator::Effort;
 use crate::integrator::photon_mapper::CameraPlan;
-use crate::transport::PhotonPlan;
+use crate::transport::{MapPlan, PhotonPlan};
 
 /// What a stored photon costs in rays besides those of its path: it is encoded, sorted and indexed.
 const STORED_COST: f64 = 1.0;
+
+/// What a ray and what is done at its end cost, in rays of a path tracer, in a picture of 2^14 pixels. Maps grow with the
+/// picture, and with them the time that look-ups wait for memory: as its fourth root, up to three times, as measured.
+const RAY: f64 = 1.5;
 
 /// Estimates of later iterations blur less, and what photons make them vary by grows. This is for the sixteenth.
 pub(super) const LATER: f64 = 2.5;
@@ -41,6 +46,15 @@ pub(super) struct Variances {
 impl Variances {
     /// One-way analysis of variance for each pixel and part, relative to the pixel's light.
     pub fn of(pixels: &[PixelTrial]) -> Self {
+        Self::over(pixels, trimmed_mean)
+    }
+
+    /// The same of all pixels, however large their variance is.
+    pub fn of_all(pixels: &[PixelTrial]) -> Self {
+        Self::over(pixels, |values| values.iter().sum::<f64>() / values.len().max(1) as f64)
+    }
+
+    fn over(pixels: &[PixelTrial], mean_of: impl Fn(Vec<f64>) -> f64) -> Self {
         let light = |pixel: &PixelTrial| {
             let all = pixel.iter().flatten().flatten().sum::<f64>();
             all.max(0.0) / (SETS * SAMPLES) as f64
@@ -49,7 +63,7 @@ impl Variances {
         let over = |by: &dyn Fn(&PixelTrial, usize) -> f64| {
             [0, 1, 2, 3].map(|part| {
                 let relative = |p: &PixelTrial| by(p, part) / (light(p) + 0.1 * mean).powi(2);
-                trimmed_mean(pixels.iter().map(relative).collect())
+                mean_of(pixels.iter().map(relative).collect())
             })
         };
         if mean <= 0.0 {
@@ -132,10 +146,7 @@ pub(super) fn balance(
         (tried.volume, of_media),
         (tried.volume_caustic, of_media),
     ];
-    let costs = maps.map(|(map, _)| {
-        let stored = map.expected_photons as f64;
-        if stored > 0.0 { 2.0 * map.paths as f64 + (1.0 + STORED_COST) * stored } else { 0.0 }
-    });
+    let costs = maps.map(|(map, _)| cost_of_map(&map));
     // Of each map as a multiple of what was tried, for one unit of the camera.
     let mut factors = [0, 1, 2, 3].map(|i| {
         let v = maps[i].1.max(0.01 * unit_variance) * LATER;
@@ -163,4 +174,47 @@ pub(super) fn balance(
         ..CameraPlan::default()
     };
     (factors, camera)
+}
+
+fn cost_of_ray(pixels: u64) -> f64 {
+    let growth = (pixels as f64 / 16_384.0).sqrt().sqrt();
+    RAY * growth.clamp(1.0, 3.0)
+}
+
+/// What the photons of a map cost in rays.
+fn cost_of_map(map: &MapPlan) -> f64 {
+    let stored = map.expected_photons as f64;
+    if stored > 0.0 { 2.0 * map.paths as f64 + (1.0 + STORED_COST) * stored } else { 0.0 }
+}
+
+/// What an iteration of a plan takes, and how much it varies.
+pub(super) fn effort(
+    variances: &Variances,
+    [plain, reading, gathering]: [f64; 3],
+    tried: &PhotonPlan,
+    (photons, camera): (&PhotonPlan, &CameraPlan),
+    pixels: u64,
+) -> Effort {
+    let [v_plain, v_gathered, v_caustic, v_medium] = variances.of_sample;
+    let samples = f64::from(camera.samples_per_pixel);
+    let reads = samples / f64::from(camera.stride);
+    let gathered = f64::from(camera.gather_rays.unwrap_or(1));
+    let of_samples = (v_plain + v_medium) / samples + (v_caustic + v_gathered / gathered) / reads;
+    let [_, of_global, of_caustic, of_media] = variances.of_maps;
+    let maps = [
+        (tried.global, photons.global, of_global),
+        (tried.caustic, photons.caustic, of_caustic),
+        (tried.volume, photons.volume, of_media),
+        (tried.volume_caustic, photons.volume_caustic, of_media),
+    ];
+    let of_map = |(tried, planned, varies): (MapPlan, MapPlan, f64)| {
+        let more = planned.paths as f64 / tried.paths.max(1) as f64;
+        if tried.expected_photons > 0 { varies.max(0.0) * LATER / more.max(1e-9) } else { 0.0 }
+    };
+    let for_photons: f64 = maps.iter().map(|(_, planned, _)| cost_of_map(planned)).sum();
+    let sent = camera.gather_rays.map_or(0.0, |rays| reads * f64::from(rays) * gathering);
+    Effort {
+        variance: of_samples + maps.into_iter().map(of_map).sum::<f64>(),
+        rays: cost_of_ray(pixels) * (samples * plain + reads * reading + sent + for_photons / pixels as f64),
+    }
 }

@@ -10,6 +10,7 @@ mod trial;
 
 pub use config::PpmConfig;
 
+use super::Effort;
 use super::photon_mapper::{CameraPlan, FinalGather, Guides, Maps, Turn};
 use crate::observer::Observer;
 use crate::photon_map::Blur;
@@ -66,7 +67,7 @@ pub(crate) fn plan(
     config: &PpmConfig,
     seed: u64,
     observer: &dyn Observer,
-) -> (PhotonPlan, CameraPlan) {
+) -> (PhotonPlan, CameraPlan, Effort) {
     let tried = trial_photons(world, config, seed);
     let rays = match (config.mapper.camera_plan(1).gather_rays, config.mapper.final_gather) {
         (None, _) => GatherRays::None,
@@ -102,7 +103,9 @@ pub(crate) fn plan(
             camera.stride /= 2;
         }
     }
-    (photons, camera)
+    let spread = Variances::of_all(&found.pixels);
+    let effort = balance::effort(&spread, found.costs, &tried, (&photons, &camera), pixels);
+    (photons, camera, effort)
 }
 
 /// Guides for the gather rays of all iterations, from photons of their own: made once, for any guide is good

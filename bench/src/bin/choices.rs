@@ -1,0 +1,234 @@
+//! How long each integrator takes to come near a reference, and how far `auto`, which chooses one of them, stays behind the
+//! one that was best.
+//!
+//! `choices [OPTIONS] SCENE.xml REFERENCE.exr …`, as many pairs as wanted. A pair of folders stands for all scenes of the
+//! one that have a reference of the same name in the other. A reference `A.exr,B.exr` is the mean of two that are
+//! independent of one another; its own noise is then known, and taken off. Scenes are rendered at the reference's size.
+//!
+//! - `--methods path,ptracer,ppm,vcm,auto`: integrators, each with its defaults and the scene's `max_depth`; without it
+//!   those of this list that there are
+//! - `--target 0.01`: the error to reach, E² = mean of (a − t)² / (t² + (0.1 m)²) over the pixels, where a is a pixel's
+//!   luminance, t the reference's and m the mean of that; or
+//! - `--at 10`: CPU seconds after which errors are compared, and not times
+//! - `--limit 60`: CPU seconds after which an integrator gives up
+//! - `--seeds 1`: renders of each; the median is shown
+//! - `--spp 1`: camera samples of each pixel in an iteration, of integrators that do not choose it
+//!
+//! Prints a table: for each scene the CPU seconds, of all threads, that each integrator took (or E² × 1000 with `--at`), which
+//! was best, and how many times as much `auto` needed as the best of the others. `> 60 (4e-2)` gave up at an error of .04.
+//!
+//! Time runs while a render is planned, photons are traced and pixels sampled; reading files, preparing the world and
+//! comparing pictures is not counted. A picture is looked at after each step, but no sooner than after 2 % more time.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use nephroid::integrator::Method;
+use nephroid::observer::Silent;
+use nephroid::session::{RenderSettings, Session};
+use nephroid::world::World;
+use nephroid_bench::cpu_time;
+use nephroid_bench::methods::{known_names, max_depth, method};
+use nephroid_bench::reference::{Reference, pairs_of_folders};
+use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::vfs::DiskFiles;
+
+/// The integrators compared, where they exist.
+const METHODS: [&str; 5] = ["path", "ptracer", "ppm", "vcm", "auto"];
+
+/// The integrator that is judged by the others.
+const JUDGED: &str = "auto";
+
+/// What may be given beside scenes and references.
+const OPTIONS: [&str; 6] = ["--methods", "--target", "--at", "--limit", "--seeds", "--spp"];
+
+/// How much more time passes before the next look, relative.
+const NEXT_LOOK: f64 = 1.02;
+
+/// When a render has done enough.
+#[derive(Clone, Copy, Debug)]
+enum Goal {
+    /// At this error, or after so many CPU seconds.
+    Error { target: f64, limit: f64 },
+    /// After so many CPU seconds.
+    Time(f64),
+}
+
+struct Arguments {
+    methods: Vec<String>,
+    goal: Goal,
+    seeds: u64,
+    samples_per_pixel: u32,
+    /// Scenes and their references.
+    pairs: Vec<(PathBuf, String)>,
+}
+
+/// How a render ended.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    cpu: f64,
+    error_sq: f64,
+}
+
+fn main() -> ExitCode {
+    match Arguments::read(std::env::args().skip(1)).and_then(|arguments| run(&arguments)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("choices: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), String> {
+    let names = arguments.methods.join(" | ");
+    let judged = arguments.methods.iter().any(|name| name == JUDGED);
+    let rest = if judged { " | auto / best" } else { "" };
+    println!("| scene | {names} | best{rest} |");
+    println!("|---|{}---|{}", "---:|".repeat(arguments.methods.len()), if judged { "---:|" } else { "" });
+    for (scene, reference) in &arguments.pairs {
+        println!("{}", row(scene, &Reference::read(reference)?, arguments)?);
+    }
+    Ok(())
+}
+
+/// A scene's row.
+fn row(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<String, String> {
+    let mut file = read_scene(path, &DiskFiles, &Options::default()).map_err(|e| e.to_string())?;
+    let max_depth = max_depth(&file)?;
+    [file.scene.film.width, file.scene.film.height] = reference.size();
+    let world = World::new(file.scene).map_err(|e| format!("{}: {e}", path.display()))?;
+    let (mut cells, mut costs) = (Vec::new(), Vec::new());
+    for name in &arguments.methods {
+        let method = method(name, max_depth).ok_or("no such integrator")?;
+        let ends: Result<Vec<End>, String> =
+            (0..arguments.seeds).map(|seed| render(&world, &method, seed, reference, arguments)).collect();
+        let (cell, cost) = arguments.goal.judge(ends?);
+        cells.push(cell);
+        costs.push((name.as_str(), cost));
+    }
+    let scene = path.file_stem().unwrap_or_default().to_string_lossy();
+    Ok(format!("| {scene} | {} | {} |", cells.join(" | "), verdict(&costs)))
+}
+
+/// The best of the integrators but the one that is judged, and what that costs in comparison, if it is there.
+fn verdict(costs: &[(&str, f64)]) -> String {
+    let others = costs.iter().filter(|(name, cost)| *name != JUDGED && cost.is_finite());
+    let best = others.min_by(|a, b| a.1.total_cmp(&b.1));
+    let judged = costs.iter().find(|(name, _)| *name == JUDGED);
+    let name = best.map_or("–", |(name, _)| name);
+    match (best, judged) {
+        (_, None) => name.to_string(),
+        (Some((_, best)), Some((_, judged))) if judged.is_finite() => {
+            format!("{name} | {:.2}", judged / best)
+        }
+        _ => format!("{name} | –"),
+    }
+}
+
+/// Renders to the goal.
+fn render(
+    world: &World,
+    method: &Method,
+    seed: u64,
+    reference: &Reference,
+    arguments: &Arguments,
+) -> Result<End, String> {
+    let samples_per_pixel = arguments.samples_per_pixel;
+    let settings = RenderSettings { method: method.clone(), samples_per_pixel, seed };
+    let (mut session, mut cpu) = (None, Duration::ZERO);
+    cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
+    let mut session = session.ok_or("no session")?;
+    let mut next = 0.0;
+    loop {
+        cpu += cpu_time(|| {
+            session.step(&Silent);
+        });
+        let now = cpu.as_secs_f64();
+        let is_last = arguments.goal.is_out_of_time(now);
+        if now < next || !(is_last || arguments.goal.asks_for_errors()) {
+            continue;
+        }
+        next = NEXT_LOOK * now;
+        let error_sq = reference.error_sq(&session.film().develop())?;
+        if is_last || arguments.goal.is_reached(error_sq) {
+            return Ok(End { cpu: now, error_sq });
+        }
+    }
+}
+
+impl Goal {
+    fn asks_for_errors(self) -> bool {
+        matches!(self, Self::Error { .. })
+    }
+
+    fn is_reached(self, error_sq: f64) -> bool {
+        matches!(self, Self::Error { target, .. } if error_sq <= target)
+    }
+
+    fn is_out_of_time(self, cpu: f64) -> bool {
+        let (Self::Error { limit, .. } | Self::Time(limit)) = self;
+        cpu >= limit
+    }
+
+    /// What the table shows of some renders, and the number that integrators are compared by: infinite if it gave up.
+    fn judge(self, mut ends: Vec<End>) -> (String, f64) {
+        match self {
+            Self::Time(_) => {
+                ends.sort_by(|a, b| a.error_sq.total_cmp(&b.error_sq));
+                let median = ends[ends.len() / 2].error_sq;
+                (format!("{:.3}", 1e3 * median), median)
+            }
+            Self::Error { limit, .. } => {
+                let cost = |end: &End| if self.is_reached(end.error_sq) { end.cpu } else { f64::INFINITY };
+                ends.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+                let end = ends[ends.len() / 2];
+                let cell = if cost(&end).is_finite() {
+                    format!("{:.2}", end.cpu)
+                } else {
+                    format!("> {limit} ({:.0e})", end.error_sq)
+                };
+                (cell, cost(&end))
+            }
+        }
+    }
+}
+
+impl Arguments {
+    fn read(mut words: impl Iterator<Item = String>) -> Result<Self, String> {
+        let known = METHODS.iter().filter(|name| method(name, None).is_some());
+        let mut arguments = Self {
+            methods: known.map(|name| (*name).to_string()).collect(),
+            goal: Goal::Time(0.0),
+            seeds: 1,
+            samples_per_pixel: 1,
+            pairs: Vec::new(),
+        };
+        let (mut target, mut at, mut limit) = (0.01, None, 60.0);
+        while let Some(word) = words.next() {
+            if word.starts_with("--") && !OPTIONS.contains(&word.as_str()) {
+                return Err(format!("no option is called {word}"));
+            }
+            let value = words.next().ok_or_else(|| format!("{word} needs a value or a reference"))?;
+            let wrong = |e: &dyn std::fmt::Display| format!("{word} {value}: {e}");
+            match word.as_str() {
+                "--methods" => arguments.methods = known_names(&value)?,
+                "--target" => target = value.parse().map_err(|e| wrong(&e))?,
+                "--at" => at = Some(value.parse().map_err(|e| wrong(&e))?),
+                "--limit" => limit = value.parse().map_err(|e| wrong(&e))?,
+                "--seeds" => arguments.seeds = value.parse::<u64>().map_err(|e| wrong(&e))?.max(1),
+                "--spp" => arguments.samples_per_pixel = value.parse().map_err(|e| wrong(&e))?,
+                scene if Path::new(scene).is_dir() => {
+                    arguments.pairs.extend(pairs_of_folders(Path::new(scene), Path::new(&value))?);
+                }
+                scene => arguments.pairs.push((PathBuf::from(scene), value)),
+            }
+        }
+        if arguments.pairs.is_empty() {
+            return Err("which SCENE.xml, and which REFERENCE.exr?".to_string());
+        }
+        arguments.goal = at.map_or(Goal::Error { target, limit }, Goal::Time);
+        Ok(arguments)
+    }
+}

@@ -1,0 +1,29 @@
+use crate::integrator::PhotonMapperConfig;
+
+/// Settings of vertex connection and merging. Nothing has to be chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VcmConfig {
+    /// What is the same as in photon mapping: the longest path, and how media are estimated.
+    pub mapper: PhotonMapperConfig,
+    /// Light paths of each iteration, if not as many as a pilot finds best.
+    pub light_paths: Option<u64>,
+    /// Whether vertices of light paths are connected to those of camera paths.
+    pub connections: bool,
+    /// Whether photons are merged with camera paths. Without, what is seen in glass and mirrors of light that came by
+    /// such surfaces stays black.
+    pub merging: bool,
+    /// Whether the weight of merging follows what its photons have in common; else they count as independent.
+    pub correlation: bool,
+}
+
+impl Default for VcmConfig {
+    fn default() -> Self {
+        Self {
+            mapper: PhotonMapperConfig::default(),
+            light_paths: None,
+            connections: true,
+            merging: true,
+            correlation: false,
+        }
+    }
+}

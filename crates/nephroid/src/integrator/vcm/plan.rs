@@ -1,0 +1,77 @@
+//! What an iteration does, found before the first.
+
+use super::VcmConfig;
+use super::light_paths::{LightPass, LightPaths};
+use super::reach::{AtFirst, Density, Reach};
+use super::weights::Techniques;
+use crate::integrator::photon_mapper::CameraPlan;
+use crate::observer::Observer;
+use crate::sampling::{Key, Stream};
+use crate::transport::{MapPlan, PhotonPlan, PhotonTargets};
+use crate::world::World;
+
+/// Photons of the first iteration that are merged at a point, where they lie at their mean density.
+const MERGED: u32 = 4;
+
+/// Light paths of an iteration at least: fewer would blur more than needs be.
+const FEWEST_PATHS: u64 = 20_000;
+
+/// Light paths of the trial that tells how densely their photons lie.
+const TRIAL_PATHS: u64 = 16_384;
+
+/// Plans for so many camera samples of each pixel in an iteration.
+pub(crate) fn plan(
+    world: &World,
+    config: &VcmConfig,
+    seed: u64,
+    observer: &dyn Observer,
+) -> (PhotonPlan, CameraPlan) {
+    let walks = config.mapper.walk_settings();
+    let in_media = PhotonTargets { global: 0, caustic: 0, ..config.mapper.targets() };
+    let mut photons = PhotonPlan::by_pilot(world, &walks, &in_media, seed);
+    let mut camera = CameraPlan::plain(1);
+    if world.lights_by_power().is_none() {
+        return (photons, camera);
+    }
+    let window = world.scene().film.window();
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    let paths = config.light_paths.unwrap_or((pixels / 4).max(FEWEST_PATHS));
+    camera.samples_per_pixel = (2 * paths / pixels).clamp(1, 16) as u32;
+    photons.global = MapPlan { paths, ..MapPlan::default() };
+    let (density, stored) = density(world, config, paths, seed, observer);
+    photons.global.expected_photons = stored;
+    camera.merging_radius = density.typical();
+    (photons, camera)
+}
+
+/// How densely the photons of so many light paths lie, and how many there are, as a trial tells.
+pub(crate) fn density(
+    world: &World,
+    config: &VcmConfig,
+    paths: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> (Density, u64) {
+    let seed = Key::new(seed, 0, Stream::Pilot).with(1).hash();
+    let pass = LightPass {
+        seed,
+        iteration: 0,
+        paths: TRIAL_PATHS,
+        max_depth: config.mapper.max_depth,
+        watched: false,
+    };
+    let everything = Techniques {
+        reach: Reach { radius: 0.0, paths: 1.0 },
+        to_lens: 0.0,
+        connects: false,
+        correlation: false,
+    };
+    let more = paths as f32 / TRIAL_PATHS as f32;
+    let nothing = Density::new(&[], MERGED, more);
+    let at_first = AtFirst { density: &nothing, factor: 1.0 };
+    let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, observer) else {
+        return (nothing, 0);
+    };
+    let stored = (trial.photon_count() as f32 * more) as u64;
+    (Density::new(&trial.places(), MERGED, more), stored)
+}
