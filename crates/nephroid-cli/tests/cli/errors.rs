@@ -104,7 +104,7 @@ fn parts_state_together_what_the_whole_does() {
 #[test]
 fn the_layer_of_errors_has_the_error_of_the_picture() {
     let dir = Dir::with_scene("", "");
-    for integrator in ["path", "ppm", "ptracer"] {
+    for integrator in ["path", "ppm", "vcm", "ptracer"] {
         let args = ["render", "a.xml", "--integrator", integrator, "--passes", "9", "--json"];
         let run = dir.run(&[&args[..], &["--aov", "error", "-o", "x.exr"]].concat()).ends_with(0);
         assert_eq!(run.json()["layers"], serde_json::json!(["error"]));
@@ -130,8 +130,7 @@ fn what_makes_no_sense_is_refused() {
         dir.run(&[&["render", "a.xml"], args].concat()).ends_with(2).says(message);
         assert!(dir.files().is_empty());
     };
-    let who =
-        "photonmapper cannot tell its error, which is mostly blur; render with ppm, path, volpath or ptracer";
+    let who = "photonmapper cannot tell its error, which is mostly blur; render with auto, ppm, vcm, path, volpath or ptracer";
     refused(&["--target-error", "5"], &format!("error: --target-error: {who}: see --integrator\n"));
     refused(&["--aov", "error", "-o", "x.exr"], &format!("error: --aov error: {who}: see --integrator\n"));
     for bad in ["0", "-1%", "five"] {
