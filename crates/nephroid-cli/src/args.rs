@@ -135,8 +135,8 @@ pub struct LimitArgs {
     /// Seconds, from the start of rendering
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
-    /// The error of the picture that it states itself, with a probability of 95 % and as 5% or 5; ppm, path, volpath and
-    /// ptracer tell it
+    /// The error of the picture that it states itself, with a probability of 95 % and as 5% or 5; photonmapper
+    /// alone cannot tell it
     #[arg(long, value_name = "PERCENT", value_parser = percentage)]
     pub target_error: Option<f64>,
 }

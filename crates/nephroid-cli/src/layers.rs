@@ -128,7 +128,7 @@ fn add_guides(layers: &mut Vec<LayerPlan>) -> Result<(), Failure> {
             "--denoise: has a layer \"{taken}\" of its own, and the scene's of that name is something else"
         )));
     }
-    layers.extend(missing.into_iter().map(|aov| LayerPlan::of(aov)));
+    layers.extend(missing.into_iter().map(LayerPlan::of));
     Ok(())
 }
 

@@ -45,7 +45,7 @@ pub fn run(args: &MergeArgs) -> Result<Exit, Failure> {
         job::check_names(job.outputs.iter().map(PathBuf::as_path))?;
     }
     let layers = layers::develop(&job.layers, aovs.as_ref());
-    let pixels = quality::pixels_of(&header.identity);
+    let pixels = quality::pixels_of(&header.identity, &job.plan);
     let quality = pixels.and_then(|pixels| Quality::of(&film, &header.convergence, pixels));
     let wants_error = job.args().is_ok_and(|args| args.aovs.contains(&LayerFlag::Error));
     let error = pixels

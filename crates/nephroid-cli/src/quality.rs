@@ -1,7 +1,8 @@
 //! What a picture states of its own error: when it is asked for, and how it is told.
 
-use nephroid::film::{Convergence, Film, Pixels, Quality};
-use nephroid::integrator::Method;
+use nephroid::film::{Pixels, Quality};
+use nephroid::integrator::{Choice, Method, Pick};
+use nephroid::session::RenderPlan;
 use serde_json::{Value, json};
 
 use crate::exit::Failure;
@@ -13,7 +14,7 @@ const EACH: u64 = 16;
 const SHARE: u64 = 10;
 
 /// The integrators that can tell their error, for messages.
-pub const WHO_TELLS: &str = "ppm, path, volpath or ptracer";
+pub const WHO_TELLS: &str = "auto, ppm, vcm, path, volpath or ptracer";
 
 /// Refuses a method that cannot tell.
 pub fn check(method: &Method, flag: &str) -> Result<(), Failure> {
@@ -26,13 +27,12 @@ pub fn check(method: &Method, flag: &str) -> Result<(), Failure> {
     )))
 }
 
-/// What a film states, if its method can tell and there is enough to tell from.
-pub fn of(method: &Method, film: &Film, convergence: &Convergence) -> Option<Quality> {
-    method.tells_error().then(|| Quality::of(film, convergence, method.pixels())).flatten()
-}
-
-/// How the pixels of a film err, by its identity, which names its method; none if that cannot tell its error.
-pub fn pixels_of(identity: &[(String, String)]) -> Option<Pixels> {
+/// How the pixels of a film err, by its identity, which names its integrator, and by what that decided; none if it cannot
+/// tell its error.
+pub fn pixels_of(identity: &[(String, String)], plan: &RenderPlan) -> Option<Pixels> {
+    if let Some(Choice { pick, .. }) = plan.choice {
+        return Some(if pick == Pick::Path { Pixels::Apart } else { Pixels::Together });
+    }
     let integrator = identity.iter().find(|(name, _)| name == "integrator")?;
     match integrator.1.as_str() {
         "photonmapper" => None,
@@ -52,9 +52,9 @@ pub fn is_due(steps: u64) -> bool {
 }
 
 /// How many times as many steps will bring the error within the target, roughly: it falls as n^(−1/2) by noise, and as
-/// n^(−1/3) where there is bias, too, as there is with `ppm`.
+/// n^(−1/3) where there is bias, too, as there is with progressive methods.
 pub fn times_the_steps(quality: &Quality, target: f64, method: &Method) -> f64 {
-    let inverse_power = if matches!(method, Method::Ppm(_)) { 3.0 } else { 2.0 };
+    let inverse_power = if method.is_progressive() { 3.0 } else { 2.0 };
     let ratio = (quality.interval[1] / target).max(1.0);
     let mut times = ratio * ratio;
     if inverse_power > 2.0 {
@@ -106,7 +106,7 @@ pub fn percent(part: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nephroid::integrator::{LightTracerConfig, PathConfig, PhotonMapperConfig, PpmConfig};
+    use nephroid::integrator::{LightTracerConfig, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig};
 
     fn quality(bias: f64) -> Quality {
         Quality { error: 0.047, interval: [0.042, 0.0501], noise: 0.044, bias, estimates: 9 }
@@ -141,7 +141,9 @@ mod tests {
 
     #[test]
     fn films_are_judged_as_renders_are() {
+        let plan = RenderPlan::default();
         let methods = [
+            Method::Vcm(VcmConfig::default()),
             Method::PhotonMapper(PhotonMapperConfig::default()),
             Method::Ppm(PpmConfig::default()),
             Method::Path(PathConfig::default()),
@@ -151,13 +153,18 @@ mod tests {
         for method in methods {
             let identity = [("integrator".to_owned(), method.name().to_owned())];
             assert_eq!(
-                pixels_of(&identity),
+                pixels_of(&identity, &plan),
                 method.tells_error().then(|| method.pixels()),
                 "{}",
                 method.name()
             );
         }
-        assert_eq!(pixels_of(&[]), None);
+        assert_eq!(pixels_of(&[], &plan), None);
+        let auto = [("integrator".to_owned(), "auto".to_owned())];
+        for (pick, pixels) in [(Pick::Path, Pixels::Apart), (Pick::Ppm, Pixels::Together)] {
+            let choice = Some(Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for: false });
+            assert_eq!(pixels_of(&auto, &RenderPlan { choice, ..plan }), Some(pixels));
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use nephroid::film::Quality;
 use nephroid::session::RenderSettings;
 use nephroid_denoise::Denoiser;
 use nephroid_formats::film_file::identity_differences;
@@ -126,7 +127,8 @@ fn prepare(
     }
     let plan = match &resumed {
         Some((begun, limits)) => {
-            let quality = quality::of(&method, &begun.film, &begun.convergence);
+            let pixels = quality::pixels_of(&begun.identity, &begun.job.plan);
+            let quality = pixels.and_then(|pixels| Quality::of(&begun.film, &begun.convergence, pixels));
             let done = Done {
                 samples_per_pass: begun.job.plan.camera.samples_per_pixel,
                 samples: begun.covered.end,

@@ -383,7 +383,7 @@ impl Run<'_> {
         if let (Some(target), Some((begun, before))) = (self.plan.target_error, self.begun) {
             let steps = self.session.steps();
             let of_step = begun.elapsed().as_secs_f64() / steps.saturating_sub(before).max(1) as f64;
-            let times = quality::times_the_steps(&quality, target, &self.session.settings().method);
+            let times = quality::times_the_steps(&quality, target, self.session.method());
             self.watch.expect_end(of_step * steps as f64 * (times - 1.0));
         }
         Some(quality::short(&quality))

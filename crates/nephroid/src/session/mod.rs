@@ -186,7 +186,7 @@ impl<'w> Session<'w> {
     /// Steps that the render is made of up to [`Self::place`], those before this session included.
     pub fn steps(&self) -> u64 {
         let whole = self.plan.camera.samples_per_pixel;
-        let in_step = samples_of_step(&self.settings.method, whole).max(1);
+        let in_step = samples_of_step(&self.method, whole).max(1);
         let steps = |samples: u32| u64::from(samples.div_ceil(in_step));
         self.place.iteration * steps(whole) + steps(self.place.samples)
     }
