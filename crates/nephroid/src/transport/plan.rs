@@ -71,6 +71,17 @@ pub struct MapPlan {
     pub limited: bool,
 }
 
+/// What a stored photon costs in rays besides those of its path: it is encoded, sorted and indexed.
+const STORED_COST: f64 = 1.0;
+
+impl MapPlan {
+    /// What its photons cost in rays.
+    pub(crate) fn rays(&self) -> f64 {
+        let stored = self.expected_photons as f64;
+        if stored > 0.0 { 2.0 * self.paths as f64 + (1.0 + STORED_COST) * stored } else { 0.0 }
+    }
+}
+
 impl PhotonPlan {
     /// Traces trial paths, with a stream of their own, and plans for the targets.
     pub(crate) fn by_pilot(

@@ -5,9 +5,6 @@ use crate::integrator::Effort;
 use crate::integrator::photon_mapper::CameraPlan;
 use crate::transport::{MapPlan, PhotonPlan};
 
-/// What a stored photon costs in rays besides those of its path: it is encoded, sorted and indexed.
-const STORED_COST: f64 = 1.0;
-
 /// What a ray and what is done at its end cost, in rays of a path tracer, in a picture of 2^14 pixels. Maps grow with the
 /// picture, and with them the time that look-ups wait for memory: as its cube root, up to four times, as measured.
 const RAY: f64 = 1.5;
@@ -146,7 +143,7 @@ pub(super) fn balance(
         (tried.volume, of_media),
         (tried.volume_caustic, of_media),
     ];
-    let costs = maps.map(|(map, _)| cost_of_map(&map));
+    let costs = maps.map(|(map, _)| map.rays());
     // Of each map as a multiple of what was tried, for one unit of the camera.
     let mut factors = [0, 1, 2, 3].map(|i| {
         let v = maps[i].1.max(0.01 * unit_variance) * LATER;
@@ -181,12 +178,6 @@ fn cost_of_ray(pixels: u64) -> f64 {
     RAY * growth.clamp(1.0, 4.0)
 }
 
-/// What the photons of a map cost in rays.
-fn cost_of_map(map: &MapPlan) -> f64 {
-    let stored = map.expected_photons as f64;
-    if stored > 0.0 { 2.0 * map.paths as f64 + (1.0 + STORED_COST) * stored } else { 0.0 }
-}
-
 /// What an iteration of a plan takes, and how much it varies.
 pub(super) fn effort(
     variances: &Variances,
@@ -211,7 +202,7 @@ pub(super) fn effort(
         let more = planned.paths as f64 / tried.paths.max(1) as f64;
         if tried.expected_photons > 0 { varies.max(0.0) * LATER / more.max(1e-9) } else { 0.0 }
     };
-    let for_photons: f64 = maps.iter().map(|(_, planned, _)| cost_of_map(planned)).sum();
+    let for_photons: f64 = maps.iter().map(|(_, planned, _)| planned.rays()).sum();
     let sent = camera.gather_rays.map_or(0.0, |rays| reads * f64::from(rays) * gathering);
     Effort {
         variance: of_samples + maps.into_iter().map(of_map).sum::<f64>(),

@@ -473,5 +473,5 @@ impl Estimator for Camera<'_> {
 
 /// Which light path a camera sample is connected to.
 fn partner(key: Key, index: u64) -> u64 {
-    key.with(index).with(0x7663_6d).hash() >> 8
+    key.with(index).with(0x0076_636d).hash() >> 8
 }

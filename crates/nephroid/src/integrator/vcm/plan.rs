@@ -5,9 +5,10 @@ use super::light_paths::{LightPass, LightPaths};
 use super::reach::{AtFirst, Density, Reach};
 use super::weights::Techniques;
 use crate::integrator::photon_mapper::CameraPlan;
+use crate::integrator::{PpmConfig, progressive};
 use crate::observer::Observer;
 use crate::sampling::{Key, Stream};
-use crate::transport::{MapPlan, PhotonPlan, PhotonTargets};
+use crate::transport::{MapPlan, PhotonPlan};
 use crate::world::World;
 
 /// Photons of the first iteration that are merged at a point, where they lie at their mean density.
@@ -26,10 +27,7 @@ pub(crate) fn plan(
     seed: u64,
     observer: &dyn Observer,
 ) -> (PhotonPlan, CameraPlan) {
-    let walks = config.mapper.walk_settings();
-    let in_media = PhotonTargets { global: 0, caustic: 0, ..config.mapper.targets() };
-    let mut photons = PhotonPlan::by_pilot(world, &walks, &in_media, seed);
-    let mut camera = CameraPlan::plain(1);
+    let (mut photons, mut camera) = (PhotonPlan::default(), CameraPlan::plain(1));
     if world.lights_by_power().is_none() {
         return (photons, camera);
     }
@@ -37,11 +35,29 @@ pub(crate) fn plan(
     let pixels = u64::from(window.width) * u64::from(window.height);
     let paths = config.light_paths.unwrap_or((pixels / 4).max(FEWEST_PATHS));
     camera.samples_per_pixel = (2 * paths / pixels).clamp(1, 16) as u32;
+    if world.has_media() {
+        let ppm = PpmConfig { mapper: config.mapper.clone(), ..PpmConfig::default() };
+        let (planned, of_ppm, _) = progressive::plan(world, &ppm, seed, observer);
+        photons = in_media(world, config, &planned, &of_ppm, &camera);
+    }
     photons.global = MapPlan { paths, ..MapPlan::default() };
     let (density, stored) = density(world, config, paths, seed, observer);
     photons.global.expected_photons = stored;
     camera.merging_radius = density.typical();
     (photons, camera)
+}
+
+/// As many photons in media for each camera sample as progressive photon mapping has.
+fn in_media(
+    world: &World,
+    config: &VcmConfig,
+    planned: &PhotonPlan,
+    of_ppm: &CameraPlan,
+    camera: &CameraPlan,
+) -> PhotonPlan {
+    let share = f64::from(camera.samples_per_pixel) / f64::from(of_ppm.samples_per_pixel);
+    let scaled = planned.scaled(world, &config.mapper.walk_settings(), [1.0, 1.0, share, share]);
+    PhotonPlan { global: MapPlan::default(), caustic: MapPlan::default(), ..scaled }
 }
 
 /// How densely the photons of so many light paths lie, and how many there are, as a trial tells.

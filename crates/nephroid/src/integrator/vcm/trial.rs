@@ -8,11 +8,11 @@ use super::{Density, Iteration, IterationKey, VcmConfig};
 use crate::color::Rgb;
 use crate::film::FilterSampler;
 use crate::integrator::photon_mapper::CameraPlan;
-use crate::integrator::{Effort, Estimator, Found, Met, Probe};
+use crate::integrator::{Effort, Estimator, Found, Met, Passed, Probe};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::sampling::{Key, Stream};
-use crate::transport::{PhotonPlan, PixelSample, pixel_key};
+use crate::transport::{MapPlan, PhotonPlan, PixelSample, pixel_key};
 use crate::world::World;
 
 /// Sets of light paths, and samples of each pixel with each of them.
@@ -64,12 +64,18 @@ struct Tally {
     rough: f64,
     connections: f64,
     photons: f64,
+    media: f64,
 }
 
 impl Probe for Tally {
     fn surface(&mut self, met: &Met<'_>) {
         self.surfaces += 1.0;
         self.rough += f64::from(u8::from(!met.bsdf.is_dirac()));
+    }
+
+    fn medium(&mut self, passed: &Passed) {
+        let photons = passed.light.volume.count + passed.light.volume_caustic.count;
+        self.media += LOOK_UP + PHOTON * f64::from(photons);
     }
 
     fn technique(&mut self, found: Found, radiance: Rgb, over_paths: f32) {
@@ -120,6 +126,8 @@ pub(crate) fn trial(
                 let share = grid.count() as f64 / grid.pixels();
                 cells[grid.cell(splat.film_position)].splat(splat, totals.paths as f64, share, samples);
             }
+            let in_media = [photons.volume, photons.volume_caustic];
+            light_rays += in_media.iter().map(MapPlan::rays).sum::<f64>() / grid.pixels();
             light_rays += LIGHT_VERTEX * (totals.photons as f64 + totals.paths as f64) / grid.pixels();
         }
         let (merging, of_paths) =
@@ -171,8 +179,11 @@ fn try_pixel(
         cell.of_paths += tally.of_paths;
         let path_rays = 1.0 + tally.surfaces + tally.rough;
         cell.path_rays += path_rays;
-        cell.rays +=
-            path_rays + LOOK_UP * tally.rough + CONNECTION * tally.connections + PHOTON * tally.photons;
+        cell.rays += path_rays
+            + LOOK_UP * tally.rough
+            + CONNECTION * tally.connections
+            + PHOTON * tally.photons
+            + tally.media;
     }
     cell
 }
