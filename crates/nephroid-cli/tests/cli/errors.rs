@@ -104,7 +104,7 @@ fn parts_state_together_what_the_whole_does() {
 #[test]
 fn the_layer_of_errors_has_the_error_of_the_picture() {
     let dir = Dir::with_scene("", "");
-    for integrator in ["path", "ppm", "vcm", "ptracer"] {
+    for integrator in ["path", "ppm", "ptracer"] {
         let args = ["render", "a.xml", "--integrator", integrator, "--passes", "9", "--json"];
         let run = dir.run(&[&args[..], &["--aov", "error", "-o", "x.exr"]].concat()).ends_with(0);
         assert_eq!(run.json()["layers"], serde_json::json!(["error"]));
