@@ -108,6 +108,9 @@ pub struct RenderArgs {
     /// position, geo_normal, uv, radius, count, error
     #[arg(long = "aov", value_name = "NAME,…", value_delimiter = ',', value_parser = layers::parse)]
     pub aovs: Vec<LayerFlag>,
+    /// Cut camera samples down whose largest channel is more than so many W/(m²·sr): takes light away, and says how much
+    #[arg(long, value_name = "RADIANCE", value_parser = clamp)]
+    pub clamp: Option<f32>,
     #[command(flatten)]
     pub limits: LimitArgs,
     #[command(flatten)]
@@ -242,6 +245,10 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 pub fn percentage(text: &str) -> Result<f64, String> {
     let digits = text.strip_suffix('%').unwrap_or(text).trim_end();
     number(digits, "write a percentage above zero, as in 5%", |p| p > 0.0 && p.is_finite()).map(|p| p / 100.0)
+}
+
+fn clamp(text: &str) -> Result<f32, String> {
+    number(text, "write a radiance above zero", |v| v > 0.0 && v < 1e30).map(|v| v as f32)
 }
 
 fn epsilon(text: &str) -> Result<f64, String> {

@@ -64,6 +64,7 @@ pub fn of_render(
     reading: &SceneArgs,
     film: &FilmSettings,
     settings: &RenderSettings,
+    clamp: Option<f32>,
     layers: &[LayerPlan],
 ) -> Identity {
     let mut out: Identity = Vec::new();
@@ -101,6 +102,9 @@ pub fn of_render(
         add("samples per pass", settings.samples_per_pixel.to_string());
     }
     add("seed", settings.seed.to_string());
+    if let Some(clamp) = clamp {
+        add("--clamp", clamp.to_string());
+    }
     let mut aovs: Vec<_> = layers.iter().map(|layer| layer.aov).collect();
     aovs.sort_unstable();
     aovs.dedup();

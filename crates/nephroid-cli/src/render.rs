@@ -146,7 +146,8 @@ fn prepare(
         quality::check(&method, "--target-error")?;
     }
     let settings = RenderSettings { method, samples_per_pixel: plan.samples_per_pass, seed: args.seed };
-    let identity = identity::of_render(&files, &args.reading, &file.scene.film, &settings, &layers);
+    let identity =
+        identity::of_render(&files, &args.reading, &file.scene.film, &settings, args.clamp, &layers);
     let begun = resumed.map(|(begun, _)| begun);
     let keeps_films = checkpoint.is_some() || outputs.iter().any(|output| output.kind == Kind::Film);
     let order = match &begun {
@@ -164,7 +165,7 @@ fn prepare(
         films::refuse_to_replace(path, &identity)?;
     }
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
-    Ok((file, Task { settings, plan, layers, identity, order, begun, visible }))
+    Ok((file, Task { settings, plan, clamp: args.clamp, layers, identity, order, begun, visible }))
 }
 
 /// The checkpoint could be written, and no file is to be written as two things. What is gone on with may have any name.

@@ -31,6 +31,8 @@ pub struct Task {
     pub settings: RenderSettings,
     /// How much.
     pub plan: Plan,
+    /// The most that a camera sample may bring.
+    pub clamp: Option<f32>,
     /// The layers of the picture.
     pub layers: Vec<LayerPlan>,
     /// What it is, as far as that is known beforehand.
@@ -159,11 +161,11 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let SceneFile { scene, origins, .. } = file;
     let world = load::world(scene, &origins)?;
     let preparing = clock.elapsed();
-    let Task { settings, plan, layers, identity, order, begun, visible } = task;
+    let Task { settings, plan, clamp, layers, identity, order, begun, visible } = task;
     let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
-    let session = session(&world, settings, &layers, begun, &plan, &watch)?;
+    let session = session(&world, settings, &layers, begun, &plan, &watch)?.clamping(clamp);
     if let Some(choice) = &session.plan().choice {
         companions.messages.note(&format!("auto: {}", choice.reason()));
     }

@@ -263,6 +263,10 @@ impl Report<'_> {
         let times: Vec<String> = seconds.iter().map(|(name, s)| format!("{name} {s:.2}")).collect();
         let _ = writeln!(out, "           seconds: {}", times.join(", "));
         self.ledger(&mut out);
+        let cut = s.picture.clamped_share();
+        if cut > 0.0 {
+            let _ = writeln!(out, "clamped: camera samples lost {:.3} % of the light", 100.0 * cut);
+        }
         if let Some(ratio) = s.picture.direct_to_indirect() {
             let _ = writeln!(out, "direct to indirect light: {ratio:.4}");
         }
@@ -396,6 +400,7 @@ impl Report<'_> {
                 "global": picture(s.picture.global),
                 "caustic": picture(s.picture.caustic),
                 "medium": picture(s.picture.medium),
+                "clamped_share": s.picture.clamped_share(),
                 "direct_to_indirect": s.picture.direct_to_indirect(),
             },
             "denoised": self.denoised.map(Denoised::json),

@@ -31,10 +31,12 @@ fn flags_win_over_the_scene_and_the_scene_over_defaults() {
 fn another_renderers_integrator_is_replaced_in_one_line_and_keeps_its_depth() {
     let dir = dir_with(r#"<integrator type="volpath"><integer name="max_depth" value="4"/></integrator>"#);
     let run = dir.run(&["render", "a.xml", "--json"]).ends_with(0);
-    assert_eq!(integrator(&run)["name"], "photonmapper");
+    assert_eq!(integrator(&run)["name"], "auto");
     assert_eq!(integrator(&run)["max_depth"], 4);
-    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
-    run.says("note: the scene asks for the integrator \"volpath\"");
+    assert_eq!(run.stderr.lines().count(), 2, "{}", run.stderr);
+    run.says("note: the scene asks for the integrator \"volpath\"; rendering with auto").says("note: auto: ");
+    let run = dir.run(&["render", "a.xml", "--json", "--photons", "300"]).ends_with(0);
+    assert_eq!(integrator(&run)["name"], "photonmapper");
 }
 
 #[test]
@@ -70,10 +72,19 @@ fn light_tracing_is_asked_for_by_its_name() {
     let args = ["render", "a.xml", "--integrator", "ptracer", "--direct-lights", "all"];
     dir.run(&args).ends_with(0).says("warning: --direct-lights mean nothing to the integrator ptracer");
     let args = ["inspect", "a.xml", "--pixel", "0,0", "--integrator", "ptracer"];
-    dir.run(&args).ends_with(2).says("inspect path or volpath");
+    dir.run(&args).ends_with(2).says("inspect path, volpath or ppm");
     let glass = r#"<shape type="sphere"><bsdf type="dielectric"/></shape></scene>"#;
     let run = Dir::with_scene("</scene>", glass).run(&["render", "a.xml", "--integrator", "ptracer"]);
     run.ends_with(0).says("warning: what is seen in mirrors and through glass is left out by ptracer");
+}
+
+#[test]
+fn a_clamp_tells_what_it_takes() {
+    let dir = dir_with(OURS);
+    let whole = dir.run(&["render", "a.xml"]).ends_with(0).does_not_say("clamped");
+    assert!(!whole.stderr.is_empty());
+    dir.run(&["render", "a.xml", "--clamp", "1e-3"]).ends_with(0).says("clamped: camera samples lost ");
+    dir.run(&["render", "a.xml", "--clamp", "0"]).ends_with(2).says("write a radiance above zero");
 }
 
 #[test]

@@ -52,7 +52,9 @@ fn every_built_in_scene_renders_without_a_word_of_complaint() {
         assert!(run.json()["image"]["mean_luminance"].as_f64().unwrap() > 0.0, "{name}");
         // So few paths as these may not fill the maps, and not every scene has all of them.
         let expected = |line: &&str| {
-            ["--emit-max", "map is empty", "--volume-photons means nothing"].iter().any(|e| line.contains(e))
+            ["--emit-max", "map is empty", "--volume-photons means nothing", "note: auto: "]
+                .iter()
+                .any(|e| line.contains(e))
         };
         let others: Vec<&str> = run.stderr.lines().filter(|line| !expected(line)).collect();
         assert!(others.is_empty(), "{name}: {others:?}");

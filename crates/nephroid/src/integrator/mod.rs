@@ -168,6 +168,8 @@ pub struct PictureSums {
     pub caustic: [f64; 3],
     /// Light from media.
     pub medium: [f64; 3],
+    /// What was cut off, where samples are clamped: the others are as they were before.
+    pub clamped: [f64; 3],
     /// Camera samples that were summed.
     pub samples: u64,
 }
@@ -188,6 +190,13 @@ impl PictureSums {
         self.samples += 1;
     }
 
+    /// Counts light that a sample lost to a clamp.
+    pub(crate) fn cut(&mut self, light: Rgb) {
+        for (sum, value) in self.clamped.iter_mut().zip(light.to_array()) {
+            *sum += f64::from(value);
+        }
+    }
+
     pub(crate) fn append(&mut self, more: &Self) {
         for (sum, value) in [
             (&mut self.emitted, more.emitted),
@@ -195,12 +204,21 @@ impl PictureSums {
             (&mut self.global, more.global),
             (&mut self.caustic, more.caustic),
             (&mut self.medium, more.medium),
+            (&mut self.clamped, more.clamped),
         ] {
             for (s, v) in sum.iter_mut().zip(value) {
                 *s += v;
             }
         }
         self.samples += more.samples;
+    }
+
+    /// The share of light that a clamp took, channels averaged; 0 without light.
+    pub fn clamped_share(&self) -> f64 {
+        let total = |v: [f64; 3]| v.iter().sum::<f64>();
+        let parts = [self.emitted, self.direct, self.global, self.caustic, self.medium];
+        let all: f64 = parts.into_iter().map(total).sum();
+        if all > 0.0 { total(self.clamped) / all } else { 0.0 }
     }
 
     /// Direct over indirect (global and caustic) light of the picture, channels averaged: 1.25 in the

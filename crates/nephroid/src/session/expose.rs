@@ -1,5 +1,6 @@
 //! The camera pass of a step, with further values of the picture or without.
 
+use crate::color::Rgb;
 use crate::film::{AovFilm, AovSum, Convergence, Film, PixelSum, Pixels};
 use crate::integrator::{AovProbe, BlurProbe, Brought, Estimator, PictureSums};
 use crate::observer::Observer;
@@ -65,16 +66,39 @@ impl Exposed {
     }
 }
 
-/// Takes the samples of a step. `with_blur` keeps what the blur of photon look-ups does, too.
+/// What becomes of samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Keep {
+    /// Whether further values of the picture are kept.
+    pub aovs: bool,
+    /// Whether it is kept what the blur of photon look-ups does.
+    pub blur: bool,
+    /// The most that a sample may bring of any channel, in W/(m²·sr).
+    pub clamp: Option<f32>,
+}
+
+/// The light of a sample with its largest channel cut down, and what was cut off.
+fn clamped(light: Rgb, limit: Option<f32>) -> (Rgb, Rgb) {
+    let most = light.max_channel();
+    match limit {
+        Some(limit) if most > limit => {
+            let left = light * (limit / most);
+            (left, light - left)
+        }
+        _ => (light, Rgb::BLACK),
+    }
+}
+
+/// Takes the samples of a step.
 pub(super) fn expose(
     world: &World,
     estimator: &impl Estimator,
     pass: &CameraPass,
-    (with_aovs, with_blur): (bool, bool),
+    Keep { aovs, blur, clamp }: Keep,
     observer: &dyn Observer,
 ) -> Exposed {
     let join = PictureSums::append;
-    if with_aovs {
+    if aovs {
         return Exposed::WithAovs(camera_pass(
             world,
             pass,
@@ -84,9 +108,11 @@ pub(super) fn expose(
             |mut sample, weight, neighbors, (picture, aovs): &mut (PixelSum, AovSum), total| {
                 let mut probe = (AovProbe::new(&sample), BlurProbe::new());
                 let light = estimator.radiance(&mut sample, neighbors, &mut probe);
+                let (kept, cut) = clamped(light.total(), clamp);
                 total.add(&light);
-                picture.add(light.total(), weight);
-                if with_blur {
+                total.cut(cut);
+                picture.add(kept, weight);
+                if blur {
                     picture.add_blur(probe.1.finish(), weight);
                 }
                 aovs.add(&probe.0.finish(&light), weight);
@@ -100,7 +126,7 @@ pub(super) fn expose(
         NearestList::new,
         join,
         |mut sample, weight, neighbors, picture: &mut PixelSum, total| {
-            let light = if with_blur {
+            let light = if blur {
                 let mut probe = BlurProbe::new();
                 let light = estimator.radiance(&mut sample, neighbors, &mut probe);
                 picture.add_blur(probe.finish(), weight);
@@ -108,8 +134,10 @@ pub(super) fn expose(
             } else {
                 estimator.radiance(&mut sample, neighbors, &mut ())
             };
+            let (kept, cut) = clamped(light.total(), clamp);
             total.add(&light);
-            picture.add(light.total(), weight);
+            total.cut(cut);
+            picture.add(kept, weight);
         },
     ))
 }

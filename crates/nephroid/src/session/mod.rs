@@ -6,7 +6,7 @@ mod plan;
 mod quality;
 mod statistics;
 
-use expose::{Exposed, expose};
+use expose::{Exposed, Keep, expose};
 pub use place::Place;
 pub use plan::RenderPlan;
 pub use statistics::{MapStatistics, Statistics};
@@ -67,6 +67,7 @@ pub struct Session<'w> {
     film: Film,
     convergence: Convergence,
     aovs: Option<AovFilm>,
+    clamp: Option<f32>,
     /// A step that was stopped, as far as it got.
     torn: Option<Exposed>,
     maps: Option<Maps>,
@@ -95,6 +96,7 @@ impl<'w> Session<'w> {
             film: Film::with_unit(window.width, window.height, world.radiance_unit()),
             convergence: Convergence::default(),
             aovs: None,
+            clamp: None,
             torn: None,
             maps: None,
             guides: None,
@@ -112,6 +114,15 @@ impl<'w> Session<'w> {
     pub fn with_aovs(mut self, aovs: &[Aov]) -> Self {
         let (width, height, unit) = (self.film.width(), self.film.height(), self.film.unit());
         self.aovs = (!aovs.is_empty()).then(|| AovFilm::with_unit(width, height, unit, aovs));
+        self
+    }
+
+    /// Cuts camera samples down whose largest channel is more than `limit`, in W/(m²·sr): less noise, and less light than
+    /// there is. What they lose is in [`PictureSums::clamped`](crate::integrator::PictureSums::clamped); what light paths
+    /// bring is not cut.
+    #[must_use]
+    pub fn clamping(mut self, limit: Option<f32>) -> Self {
+        self.clamp = limit;
         self
     }
 
@@ -158,13 +169,13 @@ impl<'w> Session<'w> {
             Method::Auto(_) => return false,
             Method::Path(config) => {
                 let tracer = PathTracer { world: self.world, config: &config };
-                let exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
+                let exposed = expose(self.world, &tracer, &pass, self.keep(false), observer);
                 self.take(exposed)
             }
             Method::LightTracer(config) => {
                 let tracer = LightTracer::new(self.world, &config);
                 let Some(light) = tracer.paths(&pass, observer) else { return false };
-                let mut exposed = expose(self.world, &tracer, &pass, (self.aovs.is_some(), false), observer);
+                let mut exposed = expose(self.world, &tracer, &pass, self.keep(false), observer);
                 exposed.add(&light.brought());
                 self.take(exposed)
             }
@@ -254,7 +265,7 @@ impl<'w> Session<'w> {
         let (Some(maps), Some(guides)) = (&self.maps, &self.guides) else { return false };
         let mapper = PhotonMapper::new(world, config, maps, guides, &plan.camera);
         let progressive = self.method.is_progressive();
-        let mut exposed = expose(world, &mapper, pass, (self.aovs.is_some(), progressive), observer);
+        let mut exposed = expose(world, &mapper, pass, self.keep(progressive), observer);
         if progressive {
             exposed.count_as_one_estimate();
         }
@@ -264,6 +275,7 @@ impl<'w> Session<'w> {
     fn vcm_step(&mut self, config: &VcmConfig, pass: &CameraPass, observer: &dyn Observer) -> bool {
         let (world, plan) = (self.world, self.plan);
         let number = vcm::IterationKey::new(pass.seed, self.place.iteration);
+        let keep = self.keep(true);
         let density = match self.density.take() {
             Some(density) => density,
             None => vcm::density(world, config, plan.photons.global.paths, pass.seed, observer).0,
@@ -275,9 +287,13 @@ impl<'w> Session<'w> {
         self.statistics.count_paths(&iteration.totals(), iteration.ledger(), &mut self.ledger);
         self.statistics.count_volumes(iteration.maps());
         let camera = iteration.camera(world, config, &plan.camera, density);
-        let mut exposed = expose(world, &camera, pass, (self.aovs.is_some(), true), observer);
+        let mut exposed = expose(world, &camera, pass, keep, observer);
         exposed.add(&iteration.brought(pass.samples));
         self.take(exposed)
+    }
+
+    fn keep(&self, blur: bool) -> Keep {
+        Keep { aovs: self.aovs.is_some(), blur, clamp: self.clamp }
     }
 
     /// Adds a pass to the film if it is whole.
