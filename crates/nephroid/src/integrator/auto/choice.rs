@@ -1,10 +1,6 @@
 use crate::integrator::{Method, PathConfig, PpmConfig, VcmConfig};
 use crate::world::World;
 
-/// So many times the work that trials tell of is what paths from the camera take, measured against methods with photons
-/// on a dozen scenes: the more evenly spread samples of these count for more than in a trial.
-const WORK_OF_PATHS: f64 = 1.3;
-
 /// Settings of a render that chooses its integrator itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AutoConfig {
@@ -55,7 +51,7 @@ impl Choice {
             (Pick::Ppm, self.ppm),
             (Pick::Vcm { connections: false }, without),
             (Pick::Vcm { connections: true }, with),
-            (Pick::Path, WORK_OF_PATHS * self.path),
+            (Pick::Path, self.path),
         ];
         let mut best = ways[0];
         for way in ways {
