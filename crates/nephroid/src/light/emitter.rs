@@ -265,6 +265,14 @@ impl Emitter {
         }
     }
 
+    /// Whether it has no extent: light from it comes to a point from one direction.
+    pub fn is_dirac(&self) -> bool {
+        matches!(
+            self.kind,
+            EmitterKind::Point { .. } | EmitterKind::Spot(_) | EmitterKind::Directional { .. }
+        )
+    }
+
     /// Whether rays that meet nothing see it.
     pub fn is_sky(&self) -> bool {
         matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))

@@ -187,6 +187,11 @@ impl World {
         self.sky
     }
 
+    /// Whether any lamp is a Dirac one, which no path meets by chance.
+    pub(crate) fn has_dirac_lamps(&self) -> bool {
+        self.emitters.iter().any(Emitter::is_dirac)
+    }
+
     /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.
     pub(crate) fn has_dirac_surfaces(&self) -> bool {
         self.aims.specular

@@ -36,7 +36,7 @@ pub(crate) fn plan(
         return (photons, camera, Choice { pick: Pick::Ppm, asked_for: true, ..work });
     }
     let vcm_config = VcmConfig { mapper: config.ppm.mapper.clone(), ..VcmConfig::default() };
-    let (vcm_photons, vcm_camera) = vcm::plan(world, &vcm_config, seed, observer);
+    let (vcm_photons, vcm_camera) = vcm::plan_beside(world, &vcm_config, (&photons, &camera), seed, observer);
     let paths = vcm_photons.global.paths;
     let (density, _) = vcm::density(world, &vcm_config, paths, seed, observer);
     let tried = vcm::trial(world, &vcm_config, (&vcm_photons, &vcm_camera), &density, seed, observer);
@@ -51,7 +51,9 @@ pub(crate) fn plan(
     let of_path = path_trial::trial(world, &path_config, seed);
     if let Some(tried) = tried {
         work.vcm = tried.merging.map(Effort::work);
-        if seen && tried.paths.variance.is_finite() {
+        // What a lamp without extent sends by specular surfaces they never find, however little of it the trial saw.
+        let hidden = photons.caustic.expected_photons > 0 && world.has_dirac_lamps();
+        if seen && !hidden && tried.paths.variance.is_finite() {
             work.path = WORK_OF_PATHS * of_path.work().max(tried.paths.variance * of_path.rays);
         }
     } else {

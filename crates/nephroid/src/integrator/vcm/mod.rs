@@ -19,7 +19,7 @@ mod weights;
 pub(crate) use camera_paths::Camera;
 pub use config::VcmConfig;
 pub(crate) use grid::Grid;
-pub(crate) use plan::{density, plan};
+pub(crate) use plan::{density, plan, plan_beside};
 pub(crate) use reach::Density;
 pub(crate) use trial::trial;
 

@@ -20,10 +20,36 @@ const FEWEST_PATHS: u64 = 20_000;
 /// Light paths of the trial that tells how densely their photons lie.
 const TRIAL_PATHS: u64 = 16_384;
 
-/// Plans for so many camera samples of each pixel in an iteration.
+/// Plans what an iteration does.
 pub(crate) fn plan(
     world: &World,
     config: &VcmConfig,
+    seed: u64,
+    observer: &dyn Observer,
+) -> (PhotonPlan, CameraPlan) {
+    if !world.has_media() {
+        return plan_iteration(world, config, None, seed, observer);
+    }
+    let ppm = PpmConfig { mapper: config.mapper.clone(), ..PpmConfig::default() };
+    let (photons, camera, _) = progressive::plan(world, &ppm, seed, observer);
+    plan_iteration(world, config, Some((&photons, &camera)), seed, observer)
+}
+
+/// The same, where it is known what progressive photon mapping would do.
+pub(crate) fn plan_beside(
+    world: &World,
+    config: &VcmConfig,
+    ppm: (&PhotonPlan, &CameraPlan),
+    seed: u64,
+    observer: &dyn Observer,
+) -> (PhotonPlan, CameraPlan) {
+    plan_iteration(world, config, Some(ppm), seed, observer)
+}
+
+fn plan_iteration(
+    world: &World,
+    config: &VcmConfig,
+    beside: Option<(&PhotonPlan, &CameraPlan)>,
     seed: u64,
     observer: &dyn Observer,
 ) -> (PhotonPlan, CameraPlan) {
@@ -35,10 +61,8 @@ pub(crate) fn plan(
     let pixels = u64::from(window.width) * u64::from(window.height);
     let paths = config.light_paths.unwrap_or((pixels / 4).max(FEWEST_PATHS));
     camera.samples_per_pixel = (2 * paths / pixels).clamp(1, 16) as u32;
-    if world.has_media() {
-        let ppm = PpmConfig { mapper: config.mapper.clone(), ..PpmConfig::default() };
-        let (planned, of_ppm, _) = progressive::plan(world, &ppm, seed, observer);
-        photons = in_media(world, config, &planned, &of_ppm, &camera);
+    if let Some((planned, of_ppm)) = beside {
+        photons = in_media(world, config, planned, of_ppm, &camera);
     }
     photons.global = MapPlan { paths, ..MapPlan::default() };
     let (density, stored) = density(world, config, paths, seed, observer);
