@@ -19,6 +19,9 @@ use crate::world::World;
 const SETS: u64 = 2;
 const SAMPLES: u64 = 4;
 
+/// The share of light that paths may be unable to find: what rounding makes of paths at grazing incidence, and no more.
+const UNFOUND: f64 = 1e-4;
+
 /// Estimates are as narrow as those of this iteration.
 const NARROWING: u64 = 8;
 
@@ -50,6 +53,8 @@ struct Cell {
     squares: f64,
     /// Of the squares that path tracing would have.
     of_paths: f64,
+    /// Sum of the luminances that path tracing could not find.
+    unfound: f64,
     /// Of what light paths bring: their mean over the pixels, squares, and squares that path tracing would have.
     splats: [f64; 3],
     rays: f64,
@@ -60,6 +65,7 @@ struct Cell {
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     of_paths: f64,
+    unfound: f64,
     surfaces: f64,
     rough: f64,
     connections: f64,
@@ -80,8 +86,10 @@ impl Probe for Tally {
 
     fn technique(&mut self, found: Found, radiance: Rgb, over_paths: f32) {
         let luminance = f64::from(radiance.luminance());
-        if luminance != 0.0 {
+        if over_paths.is_finite() {
             self.of_paths += luminance * luminance * f64::from(over_paths);
+        } else {
+            self.unfound += luminance;
         }
         match found {
             Found::Connected => self.connections += 1.0,
@@ -144,6 +152,7 @@ impl Cell {
         self.sum += more.sum;
         self.squares += more.squares;
         self.of_paths += more.of_paths;
+        self.unfound += more.unfound;
         self.rays += more.rays;
         self.path_rays += more.path_rays;
     }
@@ -155,7 +164,12 @@ impl Cell {
         let square = luminance * luminance * share;
         self.splats[0] += luminance * share;
         self.splats[1] += square;
-        self.splats[2] += square * samples * f64::from(splat.over_paths);
+        if splat.over_paths.is_finite() {
+            self.splats[2] += square * samples * f64::from(splat.over_paths);
+        } else {
+            // As often as camera samples are taken of a pixel.
+            self.unfound += luminance * share * SAMPLES as f64;
+        }
     }
 }
 
@@ -177,6 +191,7 @@ fn try_pixel(
         cell.sum += luminance;
         cell.squares += luminance * luminance;
         cell.of_paths += tally.of_paths;
+        cell.unfound += tally.unfound;
         let path_rays = 1.0 + tally.surfaces + tally.rough;
         cell.path_rays += path_rays;
         cell.rays += path_rays
@@ -196,7 +211,8 @@ fn judge(cells: &[Cell], samples_per_pixel: f64, light_rays: f64) -> Option<(Eff
     if mean <= 0.0 {
         return None;
     }
-    let (mut merging, mut paths) = (0.0, 0.0);
+    let unfound = cells.iter().map(|cell| cell.unfound).sum::<f64>() / (tried * cells.len() as f64);
+    let (mut merging, mut paths) = (0.0, if unfound > UNFOUND * mean { f64::INFINITY } else { 0.0 });
     for cell in cells {
         let measure = (light(cell) + 0.1 * mean).powi(2);
         let of_sample = (cell.squares - cell.sum * cell.sum / tried).max(0.0) / (tried - 1.0);
