@@ -112,6 +112,7 @@ pub fn choose(
     }
     media_flags::settle(&mut config, file, flags, messages)?;
     if chosen == Integrator::Vcm {
+        warn_of_foreign(flags, &OF_VCM, "vcm", messages);
         return Ok(Method::Vcm(VcmConfig { mapper: config, ..VcmConfig::default() }));
     }
     let ppm = |mapper| PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel: None };
@@ -121,6 +122,19 @@ pub fn choose(
         _ => Method::PhotonMapper(config),
     })
 }
+
+/// The flags of photon mapping that vertex connection and merging knows: what media scatter to the camera it estimates alike.
+const OF_VCM: [&str; 9] = [
+    "--max-depth",
+    "--emit-max",
+    "--single-scatter",
+    "--volume-photons",
+    "--volume-kind",
+    "--volume-estimate",
+    "--volume-neighbours",
+    "--beam-crossings",
+    "--march-step",
+];
 
 /// The integrator of a file, if it is one of ours for photons.
 fn of_file(request: &IntegratorRequest) -> Option<Integrator> {

@@ -3,7 +3,8 @@ use crate::integrator::PhotonMapperConfig;
 /// Settings of vertex connection and merging. Nothing has to be chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VcmConfig {
-    /// What is the same as in photon mapping: the longest path, and how media are estimated.
+    /// What is the same as in photon mapping: the longest path, and how light is estimated that media scatter to the camera.
+    /// The rest counts for nothing.
     pub mapper: PhotonMapperConfig,
     /// Light paths of each iteration, if not as many as a pilot finds best.
     pub light_paths: Option<u64>,
@@ -14,6 +15,36 @@ pub struct VcmConfig {
     pub merging: bool,
     /// Whether the weight of merging follows what its photons have in common; else they count as independent.
     pub correlation: bool,
+}
+
+impl VcmConfig {
+    /// What counts of [`Self::mapper`].
+    pub(super) fn in_media(&self) -> PhotonMapperConfig {
+        let PhotonMapperConfig {
+            max_depth,
+            emit_max,
+            volume_photons,
+            volume_kind,
+            volume_estimate,
+            volume_neighbours,
+            beam_crossings,
+            march_step,
+            single_scatter,
+            ..
+        } = self.mapper;
+        PhotonMapperConfig {
+            max_depth,
+            emit_max,
+            volume_photons,
+            volume_kind,
+            volume_estimate,
+            volume_neighbours,
+            beam_crossings,
+            march_step,
+            single_scatter,
+            ..PhotonMapperConfig::default()
+        }
+    }
 }
 
 impl Default for VcmConfig {

@@ -26,7 +26,7 @@ pub(crate) use trial::trial;
 use self::light_paths::{LightPass, LightPaths, Splat};
 use self::reach::{AtFirst, Reach};
 use self::weights::Techniques;
-use super::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, Turn};
+use super::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, PhotonMapperConfig, Turn};
 use super::{Brought, MapTotals};
 use crate::observer::Observer;
 use crate::photon_map::{Blur, PhotonMap, Photons};
@@ -55,8 +55,9 @@ impl IterationKey {
 pub(crate) struct Iteration {
     paths: LightPaths,
     techniques: Techniques,
-    /// Of light in media.
+    /// Of light in media, and how they are read.
     maps: Maps,
+    in_media: PhotonMapperConfig,
     guides: Guides,
 }
 
@@ -89,10 +90,11 @@ impl Iteration {
             observer,
         )?;
         let turn = Turn { seed, iteration, gathers: false, blur };
-        let volumes = Maps::volumes(world, &config.mapper, photons, &turn, observer)?;
+        let in_media = config.in_media();
+        let volumes = Maps::volumes(world, &in_media, photons, &turn, observer)?;
         let none = || PhotonMap::build(Photons::default());
         let maps = Maps::new([none(), none(), none(), none()], volumes, blur, Ledger::default());
-        Some(Self { paths, techniques, maps, guides: Guides::none() })
+        Some(Self { paths, techniques, maps, in_media, guides: Guides::none() })
     }
 
     /// What the samples of its camera do.
@@ -105,7 +107,7 @@ impl Iteration {
     ) -> Camera<'a> {
         let at_first = AtFirst { density, factor: self.maps.blur.factor(2) };
         let plan = CameraPlan { stride: 1, gather_rays: None, ..*plan };
-        let media = PhotonMapper::new(world, &config.mapper, &self.maps, &self.guides, &plan);
+        let media = PhotonMapper::new(world, &self.in_media, &self.maps, &self.guides, &plan);
         let Self { paths, techniques, .. } = self;
         Camera { world, config, paths, techniques: *techniques, at_first, media }
     }

@@ -30,7 +30,7 @@ pub(crate) fn plan(
     if !world.has_media() {
         return plan_iteration(world, config, None, seed, observer);
     }
-    let ppm = PpmConfig { mapper: config.mapper.clone(), ..PpmConfig::default() };
+    let ppm = PpmConfig { mapper: config.in_media(), ..PpmConfig::default() };
     let (photons, camera, _) = progressive::plan(world, &ppm, seed, observer);
     plan_iteration(world, config, Some((&photons, &camera)), seed, observer)
 }
@@ -80,7 +80,7 @@ fn in_media(
     camera: &CameraPlan,
 ) -> PhotonPlan {
     let share = f64::from(camera.samples_per_pixel) / f64::from(of_ppm.samples_per_pixel);
-    let scaled = planned.scaled(world, &config.mapper.walk_settings(), [1.0, 1.0, share, share]);
+    let scaled = planned.scaled(world, &config.in_media().walk_settings(), [1.0, 1.0, share, share]);
     PhotonPlan { global: MapPlan::default(), caustic: MapPlan::default(), ..scaled }
 }
 
