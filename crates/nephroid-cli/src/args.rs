@@ -85,8 +85,9 @@ pub struct RenderArgs {
     pub outputs: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// photonmapper, ppm (progressive), path (surfaces only), volpath, ptracer (light tracing), or scene for the one the
-    /// scene asks for
+    /// auto (whatever trials find best), photonmapper, ppm (progressive), vcm (paths from both ends), path (surfaces only),
+    /// volpath, ptracer (light tracing), or scene for the one the scene asks for [default: the scene's if it is one of the
+    /// first four, else auto, or photonmapper where flags ask for photon maps]
     #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
     pub integrator: Option<Integrator>,
     /// Size of the picture
