@@ -19,7 +19,7 @@ pub fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {
         }
         "auto" => {
             let mapper = PhotonMapperConfig { max_depth, ..Default::default() };
-            Method::Auto(AutoConfig { ppm: PpmConfig { mapper, ..Default::default() } })
+            Method::Auto(AutoConfig { ppm: PpmConfig { mapper, ..Default::default() }, ..Default::default() })
         }
         "ptracer" => Method::LightTracer(LightTracerConfig { max_depth }),
         "path" => Method::Path(PathConfig { max_depth, ..Default::default() }),

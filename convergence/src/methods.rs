@@ -42,6 +42,7 @@ pub fn every_method(mapper: &PhotonMapperConfig) -> Vec<Contestant> {
         photons(Method::Vcm(VcmConfig { mapper: mapper.clone(), ..VcmConfig::default() })),
         photons(Method::Auto(AutoConfig {
             ppm: PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() },
+            ..AutoConfig::default()
         })),
     ]
 }

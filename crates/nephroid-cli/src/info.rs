@@ -30,13 +30,8 @@ pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
-    let method = method::choose(
-        None,
-        &file,
-        &PhotonFlags::default(),
-        method::Integrator::PhotonMapper,
-        &mut messages,
-    )?;
+    let method =
+        method::choose(None, &file, &PhotonFlags::default(), method::Integrator::Auto, &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
     let world = load::world(file.scene, &file.origins)?;
     for remark in &load::remarks(&world, &file.origins) {

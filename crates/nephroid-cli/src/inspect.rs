@@ -54,6 +54,7 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
         method::Integrator::PhotonMapper,
         &mut messages,
     )?;
+    let method = method::maps_only(method);
     if matches!(method, Method::LightTracer(_) | Method::Vcm(_)) {
         return Err(Failure::Usage(format!(
             "inspect: of {} there is too little to tell: its light paths start anywhere, and not at a pixel; inspect \

@@ -53,7 +53,7 @@ pub struct InspectArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// photonmapper, path (surfaces only), volpath, or scene for the one the scene asks for
+    /// photonmapper, ppm, auto (of photon maps), path (surfaces only), volpath, or scene for the one the scene asks for
     #[arg(long, value_name = "NAME", value_parser = Integrator::parse)]
     pub integrator: Option<Integrator>,
     /// Camera samples of each pixel, in all, as of the render

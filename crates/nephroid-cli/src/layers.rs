@@ -139,9 +139,20 @@ pub fn values(layers: &[DevelopedLayer], aov: Aov) -> Option<Vec<f32>> {
     Some((0..pixels).flat_map(|i| channels.iter().map(move |channel| channel[i])).collect())
 }
 
+/// Whether any layer tells what only photon maps keep apart.
+pub fn need_maps(layers: &[LayerPlan]) -> bool {
+    layers.iter().any(|layer| {
+        layer.aov.is_of_photons() || matches!(layer.aov, Aov::Direct | Aov::Global | Aov::Caustic)
+    })
+}
+
 /// Why an integrator has no such value, its name first.
 fn lacks(method: &Method, aov: Aov) -> Option<&'static str> {
     match (method, aov) {
+        (Method::Vcm(_), aov) if aov.is_of_photons() => Some("vcm makes no estimates of so many photons"),
+        (Method::Vcm(_), Aov::Direct | Aov::Global | Aov::Caustic) => {
+            Some("vcm does not keep apart what its light paths bring")
+        }
         (Method::Path(_), aov) if aov.is_of_photons() => Some("path makes no estimates from photons"),
         (Method::LightTracer(_), aov) if aov.is_of_photons() => {
             Some("ptracer makes no estimates from photons")

@@ -49,7 +49,7 @@ impl Integrator {
 }
 
 /// Settles the integrator: what the command line says; else the scene's, if it is one for photons;
-/// else the default, or the photon mapper where flags ask for what only that has. Parameters of the scene's integrator count for the other one for photons, too.
+/// else the default, or the photon mapper where flags ask for what only that has. Parameters of the scene's integrator count for the others for photons, too.
 pub fn choose(
     wanted: Option<Integrator>,
     file: &SceneFile,
@@ -117,10 +117,18 @@ pub fn choose(
     }
     let ppm = |mapper| PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel: None };
     Ok(match chosen {
-        Integrator::Auto => Method::Auto(AutoConfig { ppm: ppm(config) }),
+        Integrator::Auto => Method::Auto(AutoConfig { maps_only: false, ppm: ppm(config) }),
         Integrator::Ppm => Method::Ppm(ppm(config)),
         _ => Method::PhotonMapper(config),
     })
+}
+
+/// The same method where what photon maps tell is asked for.
+pub fn maps_only(method: Method) -> Method {
+    match method {
+        Method::Auto(config) => Method::Auto(AutoConfig { maps_only: true, ..config }),
+        other => other,
+    }
 }
 
 /// The flags of photon mapping that vertex connection and merging knows: what media scatter to the camera it estimates alike.
@@ -181,7 +189,7 @@ fn by_scene(request: &IntegratorRequest) -> Result<Integrator, Failure> {
                 Some(location) => Diagnostic::error(location, message),
                 None => Diagnostic::global_error(message),
             };
-            let hint = "without --integrator scene, the photon mapper takes its place";
+            let hint = "without --integrator scene, auto takes its place";
             Err(Failure::Scene(Diagnostics(vec![diagnostic.hint(hint)])))
         }
     }
@@ -245,7 +253,8 @@ pub fn describe(method: &Method) -> Value {
             object.insert("plan_photons".to_owned(), json!(plan_photons));
             object.insert("plan_neighbours".to_owned(), json!(plan_neighbours));
         }
-        Method::Auto(AutoConfig { ppm }) => {
+        Method::Auto(AutoConfig { maps_only, ppm }) => {
+            object.insert("maps_only".to_owned(), json!(maps_only));
             let PpmConfig { mapper, plan_photons, plan_neighbours, .. } = ppm;
             object.extend(PARAMETERS.iter().map(|p| (p.name_in_files(), p.get(mapper))));
             object.insert("plan_photons".to_owned(), json!(plan_photons));

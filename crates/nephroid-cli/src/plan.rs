@@ -78,9 +78,9 @@ impl Plan {
             );
         }
         match (limits.spp, limits.passes) {
-            (Some(_), _) if progressive => {
-                refuse("ppm decides how many samples a pass has: give --passes, without --spp".to_owned())
-            }
+            (Some(_), _) if progressive => refuse(
+                "the integrator plans how many samples a pass has: give --passes, without --spp".to_owned(),
+            ),
             (Some(_), None) => {
                 refuse("with --spp, say with --passes how many passes share the samples".to_owned())
             }

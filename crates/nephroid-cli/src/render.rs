@@ -122,6 +122,7 @@ fn prepare(
     };
     let keeps = (keeps_layers, denoises);
     let layers = layers::choose(&args.aovs, &file.integrator.aovs, &method, keeps, messages)?;
+    let method = if layers::need_maps(&layers) { method::maps_only(method) } else { method };
     if args.denoise.denoise && !denoises {
         messages.note(denoise::NO_GUIDES);
     }

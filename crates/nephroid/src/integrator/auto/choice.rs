@@ -4,6 +4,8 @@ use crate::world::World;
 /// Settings of a render that chooses its integrator itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AutoConfig {
+    /// Whether something is asked for that photon maps alone tell: layers of light by its kind, or of look-ups.
+    pub maps_only: bool,
     /// Those of progressive photon mapping, of which the other integrators take what they know.
     pub ppm: PpmConfig,
 }

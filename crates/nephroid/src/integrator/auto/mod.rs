@@ -1,6 +1,6 @@
 //! The right transport by itself: paths where photons are of no use, photons where paths fail, and both together where
 //! each does a part. Which it is follows from trials before the first iteration, as lightweight photon mapping (Grittmann et
-//! al. 2018, doi 10.1145/3197517.3201376) and efficiency-aware importance sampling (Grittmann et al. 2022,
+//! al. 2018, doi 10.1111/cgf.13481) and efficiency-aware importance sampling (Grittmann et al. 2022,
 //! doi 10.1145/3528223.3530126) learn which techniques are worth their cost.
 
 mod choice;
@@ -32,7 +32,7 @@ pub(crate) fn plan(
     let (photons, camera, of_ppm) = progressive::plan(world, &config.ppm, seed, observer);
     let mut work = Choice::nothing_tried();
     work.ppm = of_ppm.work();
-    if needs_maps(&config.ppm.mapper) {
+    if config.maps_only || needs_maps(&config.ppm.mapper) {
         return (photons, camera, Choice { pick: Pick::Ppm, asked_for: true, ..work });
     }
     let vcm_config = VcmConfig { mapper: config.ppm.mapper.clone(), ..VcmConfig::default() };
