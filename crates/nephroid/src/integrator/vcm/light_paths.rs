@@ -302,7 +302,7 @@ impl Walked<'_> {
     }
 
     /// What the camera sees of light that a surface scatters.
-    fn to_lens(
+    fn seen_from_lens(
         &mut self,
         lit: &Lit<'_>,
         power: Rgb,
@@ -411,7 +411,7 @@ fn trace(
                 Event::Surface(photon, lit) => {
                     let useful = walked.land(lit, photon.power, u32::from(photon.depth), kind);
                     if useful && techniques.to_lens > 0.0 {
-                        connections.extend(walked.to_lens(lit, photon.power, kind, &mut to_lens));
+                        connections.extend(walked.seen_from_lens(lit, photon.power, kind, &mut to_lens));
                     }
                     useful
                 }
