@@ -62,11 +62,11 @@ fn until(session: &mut Session<'_>, target: f64) {
     }
 }
 
-/// Renders of a method without bias that state no more than a third of the last target, for two seeds.
-fn references(world: &World, method: &Method, last: f64) -> [Vec<f64>; 2] {
+/// Renders of a method without bias that state no more than a third of an error, for two seeds.
+fn references(world: &World, method: &Method, error: f64) -> [Vec<f64>; 2] {
     [1001, 1002].map(|seed| {
         let mut session = session(world, method.clone(), seed);
-        until(&mut session, last / 3.0);
+        until(&mut session, error / 3.0);
         luminances(session.film())
     })
 }
