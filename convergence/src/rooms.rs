@@ -50,19 +50,26 @@ pub const ROOMS: [Room; 4] = [
     Room { name: "window", path: false, samples_per_pixel: 2048, behind_glass: 0.02 },
 ];
 
+/// A built-in scene in a picture of so many pixels a side, each of which is what its own rays see.
+///
+/// # Panics
+/// If the file cannot be read.
+pub fn built_in(name: &str, side: usize) -> World {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("xml");
+    let define = |name: &str| (name.to_owned(), side.to_string());
+    let options = Options { defines: vec![define("width"), define("height")], lenient: false };
+    let mut scene = read_scene(&file, &DiskFiles, &options).expect("a built-in scene").scene;
+    scene.film.filter = Filter::Box;
+    World::new(scene).expect("a sound scene")
+}
+
 impl Room {
     /// The scene in a small picture, each pixel of which is what its own rays see.
     ///
     /// # Panics
     /// If the file cannot be read.
     pub fn world(&self) -> World {
-        let file =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(self.name).with_extension("xml");
-        let side = |name: &str| (name.to_owned(), SIDE.to_string());
-        let options = Options { defines: vec![side("width"), side("height")], lenient: false };
-        let mut scene = read_scene(&file, &DiskFiles, &options).expect("a built-in scene").scene;
-        scene.film.filter = Filter::Box;
-        World::new(scene).expect("a sound scene")
+        built_in(self.name, SIDE)
     }
 
     /// Renders a reference, from so many seeds of each method. Takes a minute or two for sixteen.

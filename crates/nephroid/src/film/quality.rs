@@ -13,14 +13,14 @@ const WITHIN_90: f64 = 1.645;
 /// and the light that pixels are measured by is noisy, too.
 const OF_METHOD: f64 = 0.05;
 
-/// The same for each e-folding that it matters by what noisy pixels are measured.
-const OF_MEASURE: f64 = 0.05;
+/// The variance of the logarithm of a squared error that is thought likely before any is known …
+const LIKELY: f64 = 0.5;
 
-/// The variance of the logarithm of a squared error of which nothing is known.
-const UNKNOWN: f64 = 1.0;
+/// … and as how many differences between steps that counts.
+const COUNTS_AS: f64 = 2.0;
 
-/// The variance that the logarithm of [`evenness`] is thought to have before it is known.
-const OF_EVENNESS: f64 = 0.25;
+/// The variance of the logarithm of a squared bias: it is a guess from two radii.
+const OF_BIAS: f64 = 0.5;
 
 /// How the errors of pixels hang together, which decides how far the error of one picture is from what is expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,26 @@ pub enum Pixels {
     Apart,
     /// Pixels share photons or light paths, and err together.
     Together,
+}
+
+/// What is thought of errors where a picture tells too little, from renders whose truth is known (`docs/error.md`).
+struct Experience {
+    /// The mean and the variance of the logarithm of what is left of the variance by [`evenness`].
+    ln_even: [f64; 2],
+    /// What the logarithm of the error is uncertain by for each e-folding that it matters by what noisy pixels are measured.
+    of_measure: f64,
+    /// What it adds to the variance of the squared error, for each part that is scatter: a photon that brightens many pixels
+    /// brightens what they are measured by.
+    of_scatter: f64,
+}
+
+impl Pixels {
+    fn experience(self) -> Experience {
+        match self {
+            Self::Apart => Experience { ln_even: [0.0, 0.25], of_measure: 0.05, of_scatter: 0.0 },
+            Self::Together => Experience { ln_even: [-0.3, 0.16], of_measure: 0.25, of_scatter: 1.0 },
+        }
+    }
 }
 
 /// How far a picture a is from the truth t:
@@ -77,17 +97,18 @@ impl Quality {
         if sums.count == 0.0 {
             return None;
         }
-        let of_noise = sums.scatter(convergence, pixels);
-        let (evenness, of_evenness) = evenness(convergence, estimates, of_noise);
+        let experience = pixels.experience();
+        let scatter = sums.scatter(convergence, pixels);
+        let (evenness, of_evenness) = evenness(convergence, estimates, scatter, experience.ln_even);
         let noise_sq = sums.noise / sums.count * evenness;
         let bias_sq = (sums.bias / sums.count).max(0.0);
         let error_sq = noise_sq + bias_sq;
         // That noise is known from so many estimates.
-        let of_noise = of_noise * (1.0 + 1.0 / estimates as f64) + of_evenness;
+        let of_noise = scatter * (1.0 + 1.0 / estimates as f64 + experience.of_scatter) + of_evenness;
         // 4 D̄² − 4 var(D̄) varies as the square of a noise of that size does.
-        let of_blur = sums.scatter(convergence, pixels) * (4.0 * sums.blur_noise / sums.count).powi(2);
+        let of_blur = scatter * (4.0 * sums.blur_noise / sums.count).powi(2) + OF_BIAS * bias_sq * bias_sq;
         let relative = |variance: f64| if variance > 0.0 { variance / (error_sq * error_sq) } else { 0.0 };
-        let method = OF_METHOD + OF_MEASURE * libm::log(sums.measure());
+        let method = OF_METHOD + experience.of_measure * libm::log(sums.measure());
         let of_error_sq = relative(of_noise * noise_sq * noise_sq) + relative(of_blur);
         let variance = 0.25 * of_error_sq + method * method;
         let error = libm::sqrt(error_sq);
@@ -104,8 +125,15 @@ const GOES_ON: f64 = 0.5;
 ///
 /// If that of the mean of n falls as n^(−1−δ), halves whose difference has the mean square ρ of the shown variance leave
 /// ρ/(2^(1+δ) − 1) of it, and further on n^(−δ). From the first estimate on the mean δ is about −ln ρ / ln(m/2) for halves of m; but
-/// what even samples take away is at last gone, and the δ of now is less. A ρ that is uncertain is drawn to 1.
-pub(super) fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) -> (f64, f64) {
+/// what even samples take away is at last gone, and the δ of now is less. A ρ that is uncertain is drawn to what is `likely`,
+/// the mean and the variance of the logarithm of what is left.
+pub(super) fn evenness(
+    convergence: &Convergence,
+    estimates: u64,
+    scatter: f64,
+    likely: [f64; 2],
+) -> (f64, f64) {
+    let [ln_likely, of_likely] = likely;
     match convergence.ln_ratio() {
         Some((compared, ln_ratio)) if compared >= 8 => {
             let compared = compared as f64;
@@ -116,13 +144,13 @@ pub(super) fn evenness(convergence: &Convergence, estimates: u64, scatter: f64) 
             // The derivative by ln ρ, near 1.
             let lever = 1.0 + of_delta * (2.0 * std::f64::consts::LN_2 + further);
             let of_ratio = scatter * lever * lever;
-            let known = OF_EVENNESS / (OF_EVENNESS + of_ratio);
+            let known = of_likely / (of_likely + of_ratio);
             // Half of what is beyond the ratio is a guess, and a fifth of that.
             let guess = 0.5 * (ln_ratio.min(0.0) - ln_left);
             let guesses = guess * guess + 0.04 * ln_ratio.min(0.0) * ln_ratio.min(0.0);
-            (libm::exp(known * ln_left), known * (of_ratio + guesses))
+            (libm::exp(ln_likely + known * (ln_left - ln_likely)), known * (of_ratio + guesses))
         }
-        _ => (1.0, OF_EVENNESS),
+        _ => (libm::exp(ln_likely), of_likely),
     }
 }
 
@@ -132,8 +160,12 @@ impl Sums {
         match pixels {
             // χ² of independent pixels.
             Pixels::Apart if self.noise > 0.0 => 2.0 * self.noise_sq / (self.noise * self.noise),
-            Pixels::Together if convergence.differences() > 1 => convergence.log_variance(),
-            _ => UNKNOWN,
+            Pixels::Apart => LIKELY,
+            Pixels::Together => {
+                let differences = convergence.differences() as f64;
+                let sum = differences * convergence.log_variance() + COUNTS_AS * LIKELY;
+                sum / (differences + COUNTS_AS)
+            }
         }
     }
 
@@ -178,7 +210,7 @@ impl Quality {
     pub fn of_pixels(film: &Film, convergence: &Convergence, pixels: Pixels) -> Option<Vec<f32>> {
         let quality = Self::of(film, convergence, pixels)?;
         let scatter = Sums::of(film).scatter(convergence, pixels);
-        let (evenness, _) = evenness(convergence, quality.estimates, scatter);
+        let (evenness, _) = evenness(convergence, quality.estimates, scatter, pixels.experience().ln_even);
         let root = |[noise, bias]: [f64; 2]| libm::sqrt((noise * evenness + bias).max(0.0)) as f32;
         Some(film.terms(&Lights::of(film)).map(|terms| terms.map_or(0.0, root)).collect())
     }
