@@ -1,5 +1,5 @@
-//! Built-in rooms by every method that can see them, against what long renders found: a plain room, and one lit by a lamp in a
-//! closed bulb.
+//! The built-in rooms by every method that can see them, against what long renders found: a plain room, one lit through a
+//! keyhole, one by a lamp in a closed bulb and one by the sun through a window pane onto glass.
 //!
 //! References are the files in `rooms/`: means of blocks of pixels, of those that see no glass and of those that do. They
 //! are path tracing's where that finds the light, else light tracing's where no glass is seen and late progressive photon
@@ -17,7 +17,7 @@
 
 use std::path::Path;
 
-use nephroid::integrator::{Method, PpmConfig};
+use nephroid::integrator::{Method, PpmConfig, VcmConfig};
 use nephroid_convergence::{
     ROOM_PARTS, ROOMS, Room, RoomReference, forgiving, iterated_renders, kind_of_part, light_tracer,
     part_samples, path, pixel_kinds,
@@ -63,6 +63,7 @@ fn ways(room: &Room) -> Vec<Way> {
     let mut ways = vec![
         exact("ptracer", light_tracer(None), 256, false),
         blurred("ppm", Method::Ppm(PpmConfig::default()), 16, 0.02),
+        blurred("vcm", Method::Vcm(VcmConfig::default()), 16, 0.02),
     ];
     if room.path {
         ways.push(exact("path", path(), 256, true));
@@ -118,6 +119,16 @@ fn a_plain_room() {
 }
 
 #[test]
+fn a_room_lit_through_a_keyhole() {
+    all_agree("keyhole");
+}
+
+#[test]
 fn a_lamp_in_a_closed_bulb() {
     all_agree("bulb");
+}
+
+#[test]
+fn the_sun_through_a_window_onto_glass() {
+    all_agree("window");
 }

@@ -30,7 +30,7 @@ pub(crate) fn plan(
     let in_media = PhotonTargets { global: 0, caustic: 0, ..config.mapper.targets() };
     let mut photons = PhotonPlan::by_pilot(world, &walks, &in_media, seed);
     let mut camera = CameraPlan::plain(1);
-    if world.lights_by_power().is_none() {
+    if world.lights_by_power().is_none() || config.light_paths == Some(0) {
         return (photons, camera);
     }
     let window = world.scene().film.window();
@@ -66,8 +66,11 @@ pub(crate) fn density(
         connects: false,
         correlation: false,
     };
+    let nothing = Density::new(&[], MERGED, 1.0);
+    if paths == 0 {
+        return (nothing, 0);
+    }
     let more = paths as f32 / TRIAL_PATHS as f32;
-    let nothing = Density::new(&[], MERGED, more);
     let at_first = AtFirst { density: &nothing, factor: 1.0 };
     let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, observer) else {
         return (nothing, 0);
