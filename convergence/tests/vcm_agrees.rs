@@ -40,11 +40,11 @@ fn ways(max_depth: Option<u32>) -> Vec<(&'static str, Method, f64)> {
     let all = VcmConfig { mapper, light_paths: Some(3000), ..VcmConfig::default() };
     let way = |name, config, bias| (name, Method::Vcm(config), bias);
     vec![
-        way("all", all.clone(), BLUR),
-        way("correlation", VcmConfig { correlation: true, ..all.clone() }, BLUR),
-        way("merging alone", VcmConfig { connections: false, ..all.clone() }, BLUR),
+        way("neither", VcmConfig { merging: false, connections: false, ..all.clone() }, 0.0),
         way("connections alone", VcmConfig { merging: false, ..all.clone() }, 0.0),
-        way("neither", VcmConfig { merging: false, connections: false, ..all }, 0.0),
+        way("merging alone", VcmConfig { connections: false, ..all.clone() }, BLUR),
+        way("correlation", VcmConfig { correlation: true, ..all.clone() }, BLUR),
+        way("all", all, BLUR),
     ]
 }
 
@@ -57,17 +57,18 @@ fn parts(pictures: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 #[track_caller]
 fn all_agree(b: Builder) {
-    all_agree_within(b, None);
+    all_agree_within(b, None, BLUR);
 }
 
+/// With paths of so many segments and so much blur.
 #[track_caller]
-fn all_agree_within(b: Builder, max_depth: Option<u32>) {
+fn all_agree_within(b: Builder, max_depth: Option<u32>, blur: f64) {
     let world = b.build();
     assert_eq!(world.remarks(), []);
-    let exact = parts(&renders(&world, &volpath(max_depth), 128, 0..SEEDS));
+    let exact = parts(&renders(&world, &volpath(max_depth), 64, 0..SEEDS));
     for (first, (name, method, bias)) in (1..).map(|i| 100 * i).zip(ways(max_depth)) {
         let found = parts(&iterated_renders(&world, &method, 2, 16, first..first + SEEDS));
-        agree(name, &found, &exact, bias);
+        agree(name, &found, &exact, if bias > 0.0 { blur } else { 0.0 });
     }
 }
 
@@ -81,7 +82,7 @@ fn agree(name: &str, found: &[Vec<f64>], exact: &[Vec<f64>], bias: f64) {
         let outcome = found.welch(&exact);
         assert!(outcome.passes(sidak(ALPHA, TESTS)), "{name}, part {part}: {outcome}");
         let deviation = libm::hypot(found.standard_error(), exact.standard_error()) / exact.mean();
-        assert!(part < last || deviation < 0.02, "{name}: too few samples, {deviation}");
+        assert!(part < last || deviation < 0.03, "{name}: too few samples, {deviation}");
     }
 }
 
@@ -128,7 +129,7 @@ fn with_paths_of_few_segments() {
         let bright = facing(DVec3::new(0.0, 0.0, -0.99), 0.3, DVec3::X, 0.0);
         let (black, glow) = (b.diffuse(0.0), b.constant(1.0));
         b.shape(Geometry::Rectangle, bright, black).emission = Some(glow);
-        all_agree_within(b, Some(max_depth));
+        all_agree_within(b, Some(max_depth), BLUR);
     }
 }
 
@@ -164,9 +165,10 @@ fn under_a_parallel_beam() {
     all_agree(lit_by(LightKind::Directional { direction, irradiance: Rgb::splat(2.0) }));
 }
 
+/// Most photons miss what is seen, so that those which do not are merged from far around.
 #[test]
 fn under_a_constant_sky() {
-    all_agree(lit_by(LightKind::Constant { radiance: Rgb::new(0.5, 0.7, 1.0) }));
+    all_agree_within(lit_by(LightKind::Constant { radiance: Rgb::new(0.5, 0.7, 1.0) }), None, 0.06);
 }
 
 #[test]
@@ -361,7 +363,7 @@ fn in_fog_without_end() {
     b.sphere(Vec3::ZERO, 0.7, white);
     b.light(LightKind::Point { position: Vec3::new(3.0, 3.0, 2.0), intensity: Rgb::splat(30.0) });
     b.scene.lights.last_mut().expect("the lamp").medium = Some(fog);
-    all_agree(b);
+    all_agree_within(b, Some(4), BLUR);
 }
 
 /// Without light paths it is a path tracer.

@@ -5,8 +5,8 @@ use super::densities::{Kind, Node, Place, Trail};
 use crate::math::{Vec3, warp};
 use crate::sampling::{Key, Sampler, Sequence, Stream};
 
-/// A handful of products in single precision, and cosines of directions that are made from positions.
-const ROUNDING: f32 = 2e-5;
+/// Of directions that graze surfaces, the cosines of which are rounded as the directions are.
+const ROUNDING: f32 = 2e-3;
 
 fn sampler(path: u64) -> Sampler {
     Sampler::new(Sequence::Independent, Key::new(8, 0, Stream::Pilot), path)
