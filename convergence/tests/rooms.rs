@@ -1,5 +1,5 @@
-//! The built-in rooms by every method that can see them, against what long renders found: a plain room, one lit through a
-//! keyhole, one by a lamp in a closed bulb and one by the sun through a window pane onto glass.
+//! Built-in rooms by every method that can see them, against what long renders found: a plain room, one lit through a
+//! keyhole and one by a lamp in a closed bulb.
 //!
 //! References are the files in `rooms/`: means of blocks of pixels, of those that see no glass and of those that do. They
 //! are path tracing's where that finds the light, else light tracing's where no glass is seen and late progressive photon
@@ -129,9 +129,4 @@ fn a_room_lit_through_a_keyhole() {
 #[test]
 fn a_lamp_in_a_closed_bulb() {
     all_agree("bulb");
-}
-
-#[test]
-fn the_sun_through_a_window_onto_glass() {
-    all_agree("window");
 }

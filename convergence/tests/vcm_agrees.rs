@@ -315,8 +315,8 @@ fn in_a_window_of_the_picture() {
 #[test]
 fn with_instances() {
     let mut b = room();
-    b.ceiling_lamp(0.3, 10.0);
     let ball = b.scene.shapes.pop().expect("the ball");
+    b.ceiling_lamp(0.3, 10.0);
     let group = b.scene.groups.push(Group { name: "ball".to_owned(), shapes: vec![ball] });
     for (x, stretch) in [(0.0, DVec3::ONE), (-0.4, DVec3::new(0.6, 0.8, 0.5))] {
         let to_world = Transform::scale(stretch).then(Transform::translate(DVec3::new(x, 0.1, 0.0)));
@@ -351,19 +351,6 @@ fn with_fog_behind_a_screen() {
     b.shape(Geometry::Rectangle, facing(DVec3::new(0.0, 0.1, 0.4), 0.75, DVec3::X, 0.0), paper);
     b.ceiling_lamp(0.3, 10.0);
     all_agree(b);
-}
-
-/// Fog everywhere: lamps send light where there are surfaces, and fog lies beside these, too.
-#[test]
-fn in_fog_without_end() {
-    let mut b = Builder::seen_from(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, 36.0, SIDE as u32);
-    let fog = b.fog(Rgb::splat(0.3), Rgb::splat(0.9), Phase::Isotropic);
-    b.fill(fog);
-    let white = b.diffuse(0.8);
-    b.sphere(Vec3::ZERO, 0.7, white);
-    b.light(LightKind::Point { position: Vec3::new(3.0, 3.0, 2.0), intensity: Rgb::splat(30.0) });
-    b.scene.lights.last_mut().expect("the lamp").medium = Some(fog);
-    all_agree_within(b, Some(4), BLUR);
 }
 
 /// Without light paths it is a path tracer.
