@@ -10,7 +10,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::integrator::{
-    AutoConfig, DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show, VcmConfig,
+    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show, VcmConfig,
 };
 use nephroid::light::SphereSampling;
 use nephroid::math::{DVec3, Transform, Vec3};
@@ -94,7 +94,6 @@ fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
         light_paths: Some(500),
         ..VcmConfig::default()
     };
-    let planned = PpmConfig { mapper: PhotonMapperConfig { max_depth, ..nearest() }, ..Default::default() };
     vec![
         ("path", path(max_depth)),
         ("map", with(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),
@@ -107,7 +106,6 @@ fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
         ("vcm, correlation", Method::Vcm(VcmConfig { correlation: true, ..vcm.clone() })),
         ("vcm that merges", Method::Vcm(VcmConfig { connections: false, ..vcm.clone() })),
         ("vcm that connects", Method::Vcm(VcmConfig { merging: false, ..vcm })),
-        ("auto", Method::Auto(AutoConfig { ppm: planned })),
     ]
 }
 

@@ -62,12 +62,12 @@ fn ways(room: &Room) -> Vec<Way> {
         behind_glass: true,
     };
     let mut ways = vec![exact("ptracer", light_tracer(None), 256, false)];
-    if !room.thin_walls {
+    if room.thin_walls {
+        let vcm = Method::Vcm(VcmConfig { merging: false, ..VcmConfig::default() });
+        ways.push(Way { iterations: 16, ..exact("vcm that connects", vcm, 1, false) });
+    } else {
         ways.push(blurred("ppm", Method::Ppm(PpmConfig::default()), 16, 0.02));
-        ways.push(blurred("vcm", Method::Vcm(VcmConfig::default()), 16, 0.02));
     }
-    let connected = VcmConfig { merging: false, ..VcmConfig::default() };
-    ways.push(Way { iterations: 16, ..exact("vcm that connects", Method::Vcm(connected), 1, false) });
     if room.path {
         ways.push(exact("path", path(), 256, true));
     }
