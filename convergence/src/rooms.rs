@@ -40,14 +40,16 @@ pub struct Room {
     samples_per_pixel: u32,
     /// The bias of the reference where glass is seen, relative: photons blur there.
     pub behind_glass: f64,
+    /// Whether bright light lies on the other side of walls without thickness, past the foot of which it is blurred.
+    pub thin_walls: bool,
 }
 
 /// The rooms.
 pub const ROOMS: [Room; 4] = [
-    Room { name: "room", path: true, samples_per_pixel: 512, behind_glass: 0.0 },
-    Room { name: "keyhole", path: true, samples_per_pixel: 2048, behind_glass: 0.0 },
-    Room { name: "bulb", path: false, samples_per_pixel: 1024, behind_glass: 0.02 },
-    Room { name: "window", path: false, samples_per_pixel: 2048, behind_glass: 0.02 },
+    Room { name: "room", path: true, samples_per_pixel: 512, behind_glass: 0.0, thin_walls: false },
+    Room { name: "keyhole", path: true, samples_per_pixel: 2048, behind_glass: 0.0, thin_walls: true },
+    Room { name: "bulb", path: false, samples_per_pixel: 1024, behind_glass: 0.02, thin_walls: false },
+    Room { name: "window", path: false, samples_per_pixel: 2048, behind_glass: 0.02, thin_walls: false },
 ];
 
 /// A built-in scene in a picture of so many pixels a side, each of which is what its own rays see.

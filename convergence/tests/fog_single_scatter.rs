@@ -4,7 +4,7 @@
 //! somewhere in this file with probability 1 %.
 
 use nephroid::color::Rgb;
-use nephroid::integrator::{DirectSource, Method, PhotonMapperConfig, VolumeEstimate};
+use nephroid::integrator::{DirectSource, Method, PhotonMapperConfig, VcmConfig, VolumeEstimate};
 use nephroid::math::{Transform, Vec3};
 use nephroid::medium::{Medium, Phase};
 use nephroid::shape::Geometry;
@@ -41,8 +41,10 @@ fn rays() -> PhotonMapperConfig {
 }
 
 /// The methods that sample and do not estimate densities: they are right to the noise.
-fn exact_methods() -> [(&'static str, Method); 2] {
-    [("rays", Method::PhotonMapper(rays())), ("volpath", volpath(Some(2)))]
+fn exact_methods() -> [(&'static str, Method); 3] {
+    let mapper = PhotonMapperConfig { max_depth: Some(2), ..PhotonMapperConfig::default() };
+    let vcm = Method::Vcm(VcmConfig { mapper, light_paths: Some(2000), ..VcmConfig::default() });
+    [("rays", Method::PhotonMapper(rays())), ("volpath", volpath(Some(2))), ("vcm", vcm)]
 }
 
 /// How a medium is said to be where it is.

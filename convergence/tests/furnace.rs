@@ -10,7 +10,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::integrator::{
-    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show,
+    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, Show, VcmConfig,
 };
 use nephroid::light::SphereSampling;
 use nephroid::math::{DVec3, Transform, Vec3};
@@ -89,6 +89,11 @@ fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
         Method::Ppm(config) => Method::Ppm(PpmConfig { samples_per_pixel: Some(1), ..config }),
         method => method,
     };
+    let vcm = VcmConfig {
+        mapper: PhotonMapperConfig { max_depth, ..Default::default() },
+        light_paths: Some(500),
+        ..VcmConfig::default()
+    };
     vec![
         ("path", path(max_depth)),
         ("map", with(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),
@@ -97,6 +102,10 @@ fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
         ("ppm", ppm(nearest())),
         ("ppm by the map", ppm(PhotonMapperConfig { final_gather: FinalGather::Off, ..nearest() })),
         ("ppm of fixed radius", ppm(PhotonMapperConfig { direct: DirectSource::Map, ..mapper() })),
+        ("vcm", Method::Vcm(vcm.clone())),
+        ("vcm, correlation", Method::Vcm(VcmConfig { correlation: true, ..vcm.clone() })),
+        ("vcm that merges", Method::Vcm(VcmConfig { connections: false, ..vcm.clone() })),
+        ("vcm that connects", Method::Vcm(VcmConfig { merging: false, ..vcm })),
     ]
 }
 
@@ -293,6 +302,8 @@ fn endless_parallel_plates_have_the_closed_form() {
         ("path", path(None)),
         ("map", on_the_spot(DirectSource::Rays)),
         ("direct from the map", on_the_spot(DirectSource::Map)),
+        // Merged, photons would miss those that mirrors have to their side.
+        ("vcm", Method::Vcm(VcmConfig { merging: false, light_paths: Some(500), ..VcmConfig::default() })),
     ] {
         expect(name, &world, &method, 40, exact);
     }

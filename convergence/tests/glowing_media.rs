@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::integrator::{
-    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, VolumeEstimate,
+    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, VcmConfig, VolumeEstimate,
 };
 use nephroid::light::LightKind;
 use nephroid::material::Material;
@@ -20,8 +20,8 @@ use nephroid::world::World;
 use nephroid_convergence::{Builder, forgiving, mean_radiances, photon_mapper, photons, session};
 use nephroid_testkit::{ALPHA, MeanTest, Tolerance, integrate, sidak};
 
-/// Five ways to see a ball of gas, twice; its power and that of a cloud; four renders of a room.
-const TESTS: usize = 5 * 2 + 2 + 4;
+/// Six ways to see a ball of gas, twice; its power and that of a cloud; four renders of a room.
+const TESTS: usize = 6 * 2 + 2 + 4;
 
 const ALBEDO: f64 = 0.5;
 const EMISSION: f64 = 2.0;
@@ -106,6 +106,7 @@ fn a_ball_of_gas_lights_a_floor() {
             (mapper(FinalGather::Off, DirectSource::Rays, None), 1),
             (mapper(FinalGather::Rays(2), DirectSource::Rays, Some(2)), 1),
             (mapper(FinalGather::Off, DirectSource::Map, Some(2)), 1),
+            (Method::Vcm(VcmConfig { light_paths: Some(500), ..VcmConfig::default() }), 1),
         ];
         for (i, (method, samples)) in methods.iter().enumerate() {
             let test: MeanTest = mean_radiances(&world, method, *samples, 1..9).into_iter().collect();

@@ -9,7 +9,8 @@ use nephroid::color::Rgb;
 use nephroid::film::{Aov, Film, FilmSettings, Filter};
 use nephroid::handle::Arena;
 use nephroid::integrator::{
-    DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, VolumeEstimate,
+    AutoConfig, DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig,
+    VolumeEstimate,
 };
 use nephroid::light::LightKind;
 use nephroid::material::Material;
@@ -26,7 +27,7 @@ use nephroid_convergence::{Builder, balls_in_fog, iterations, light_tracer, mean
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// As many as the pairs of means compared.
-const TESTS: usize = 40;
+const TESTS: usize = 60;
 
 /// A room, open to the sky in front, with surfaces of every shape and material and lights of every
 /// kind, its unit of length `scale` and its place `place`.
@@ -119,7 +120,7 @@ fn shapes(b: &mut Builder) {
     b.sphere(Vec3::new(-1.0, 1.2, 0.0), 0.1, black).emission = Some(glow);
 }
 
-/// The path tracer, and photon mappers with everything that has a length in it.
+/// The path tracer, paths from both ends, and photon mappers with everything that has a length in it.
 /// So many paths are emitted for each map, or as many as a pilot finds to be needed.
 fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
     let mapper = PhotonMapperConfig { photons: 2000, caustic_photons: 500, emit, ..Default::default() };
@@ -133,7 +134,11 @@ fn methods(scale: f32, emit: Option<u64>) -> Vec<(&'static str, Method)> {
         max_radius: Some(0.3 * scale),
         ..mapper.clone()
     };
+    let vcm = VcmConfig { mapper: mapper.clone(), light_paths: emit, ..VcmConfig::default() };
     vec![
+        ("vcm", Method::Vcm(vcm.clone())),
+        ("vcm, correlation", Method::Vcm(VcmConfig { correlation: true, connections: false, ..vcm })),
+        ("auto", Method::Auto(AutoConfig { ppm: planned.clone(), ..AutoConfig::default() })),
         ("ppm", Method::Ppm(planned.clone())),
         (
             "ppm, limited radius",
@@ -252,6 +257,14 @@ fn methods_in_fog() -> Vec<(&'static str, Method)> {
         ("ppm in fog", Method::Ppm(PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() })),
         ("ppm with beams", given(beams)),
         ("ppm by marching", given(march)),
+        ("vcm in fog", Method::Vcm(VcmConfig { mapper: mapper.clone(), ..VcmConfig::default() })),
+        (
+            "auto in fog",
+            Method::Auto(AutoConfig {
+                ppm: PpmConfig { mapper: mapper.clone(), ..PpmConfig::default() },
+                ..AutoConfig::default()
+            }),
+        ),
         ("photon mapper in fog", Method::PhotonMapper(mapper)),
     ]
 }

@@ -5,7 +5,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, Show};
+use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, Show, VcmConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
@@ -25,7 +25,7 @@ const GLOSSY: f64 = 0.6;
 const SIDE: usize = 24;
 const BLOCK: usize = 8;
 const BLOCKS: usize = (SIDE / BLOCK) * (SIDE / BLOCK);
-/// More than, for each exponent, the sky by each method, photons, and a room by two methods.
+/// More than, for each exponent, the sky by each method, photons, and a room by three methods.
 const TESTS: usize = EXPONENTS.len() * (6 + 1 + 3 * BLOCKS);
 
 fn level() -> f64 {
@@ -105,7 +105,7 @@ fn room(exponent: f32) -> World {
 
 /// Blocks of 8 by 8 pixels agree to 1 % by gather rays, and to 2 % from the maps on the spot, which
 /// glossy lobes do not use: what either reads off the wall near its edges is too dark by .17 of the
-/// kernel's radius, of some .03 and .1.
+/// kernel's radius, of some .03 and .1. So is what paths from both ends merge.
 #[test]
 fn a_glossy_room_is_what_paths_make_it() {
     for exponent in EXPONENTS {
@@ -113,7 +113,10 @@ fn a_glossy_room_is_what_paths_make_it() {
         let paths = block_samples(&renders(&world, &path(), 64, 1..17), SIDE, BLOCK);
         let mapper =
             |final_gather| Method::PhotonMapper(PhotonMapperConfig { final_gather, ..photon_mapper(20_000) });
-        for (method, bias) in [(mapper(FinalGather::Rays(4)), 0.01), (mapper(FinalGather::Off), 0.02)] {
+        let vcm = Method::Vcm(VcmConfig { light_paths: Some(4000), ..VcmConfig::default() });
+        for (method, bias) in
+            [(mapper(FinalGather::Rays(4)), 0.01), (mapper(FinalGather::Off), 0.02), (vcm, 0.01)]
+        {
             let pictures = renders(&world, &method, 16, 21..37);
             for (a, b) in block_samples(&pictures, SIDE, BLOCK).iter().zip(&paths) {
                 let mapped: MeanTest = a.iter().copied().collect();

@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use nephroid::integrator::{DirectSource, FinalGather, Method, PhotonMapperConfig, Show};
+use nephroid::integrator::{DirectSource, FinalGather, Method, PhotonMapperConfig, Show, VcmConfig};
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
@@ -16,8 +16,8 @@ use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// Pixels of a strip across the light of a polygon.
 const STRIP: u32 = 12;
-/// Two plates by four estimators, and two strips by four, with their sums.
-const TESTS: usize = 2 * 4 + 2 * 4 * (1 + STRIP as usize);
+/// Two plates by six estimators, and two strips by five, with their sums.
+const TESTS: usize = 2 * 6 + 2 * 5 * (1 + STRIP as usize);
 
 fn level() -> f64 {
     sidak(ALPHA, TESTS)
@@ -68,11 +68,14 @@ fn parallel_plates_reach_the_sum_of_their_series() {
         ..photon_mapper(40_000)
     };
     let nearest = PhotonMapperConfig { radius: None, neighbours: 100, ..fixed.clone() };
+    let vcm = VcmConfig { light_paths: Some(5000), ..VcmConfig::default() };
     let methods = [
         (path(), 64, 1e-6),
         (Method::PhotonMapper(fixed), 4, 1e-6),
         (Method::PhotonMapper(nearest), 4, 1e-3),
         (Method::PhotonMapper(photon_mapper(40_000)), 16, 3e-3),
+        (Method::Vcm(vcm.clone()), 1, 3e-3),
+        (Method::Vcm(VcmConfig { merging: false, ..vcm }), 1, 1e-6),
     ];
     for (i, upper) in [(0, false), (1, true)] {
         let series = EXITANCE[i] + ALBEDO[i] * EXITANCE[1 - i];
@@ -150,6 +153,7 @@ fn polygons_light_every_point_by_lamberts_formula() {
             (Method::PhotonMapper(photon_mapper(0)), 512, None, 1e-5),
             (map(Some(radius as f32)), 64, Some(radius), 1e-4),
             (map(None), 64, None, 2e-3),
+            (Method::Vcm(VcmConfig::default()), 1, None, 1e-5),
         ] {
             let exact = irradiances(&lamp, &world, radius);
             let pictures = renders(&world, &method, samples, 1..25);

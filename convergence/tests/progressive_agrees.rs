@@ -1,5 +1,6 @@
 //! All integrators against one another, in scenes that have everything between them: light tracing where nothing is seen
-//! by mirrors or through glass, photon mapping, and progressive photon mapping in iterations from the 20th on.
+//! by mirrors or through glass, photon mapping, and progressive photon mapping and vertex connection and merging in
+//! iterations from the 20th on.
 //!
 //! Photon maps blur, and more so where surfaces meet; with as few photons as are sent here, that is forgiven as stated
 //! beside each scene: so much of the whole picture and twice that of a quarter of it. Beyond that the tests of the file
@@ -9,7 +10,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, PpmConfig};
+use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, PpmConfig, VcmConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{Affine2, DVec3, Transform, Vec2, Vec3};
@@ -28,7 +29,7 @@ const SIDE: usize = 16;
 const BLOCK: usize = 8;
 
 /// Scenes, ways, and parts of a picture.
-const TESTS: usize = 9 * 4 * 5;
+const TESTS: usize = 9 * 5 * 5;
 
 /// Seeds of each method.
 const SEEDS: u64 = 8;
@@ -81,6 +82,8 @@ fn ways(specular: bool, bias: f64) -> Vec<(String, Method, f64, Pictures)> {
         let method = Method::Ppm(PpmConfig { samples_per_pixel: Some(6), ..config });
         ways.push((format!("ppm, gather {final_gather:?}"), method, bias, Pictures::Late));
     }
+    let vcm = VcmConfig { mapper, light_paths: Some(8000), ..VcmConfig::default() };
+    ways.push(("vcm".to_string(), Method::Vcm(vcm), bias, Pictures::Late));
     ways
 }
 

@@ -15,7 +15,7 @@
 use std::f64::consts::PI;
 
 use nephroid::integrator::{
-    DirectSource, FinalGather, Method, PhotonMapperConfig, PpmConfig, Show, VolumeEstimate,
+    DirectSource, FinalGather, Method, PhotonMapperConfig, PpmConfig, Show, VcmConfig, VolumeEstimate,
 };
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::Geometry;
@@ -135,6 +135,26 @@ fn points_in_media_near_rays() {
 fn beams_in_media() {
     let (world, exact) = beside_a_light(SIDE);
     judge_progressive("beams", &world, in_fog(VolumeKind::Beams, VolumeEstimate::Beam, 150), &exact, 1.0);
+}
+
+/// Vertex connection and merging in uniform light, the inside of a ball of radius 2 and albedo ½ about a point of 3 W/sr,
+/// where photons have no bias: of light that both ends find, some is merged, whose noise falls as that of photons does, and
+/// the rest connected, ∝ 1/N.
+#[test]
+fn both_ends() {
+    let mut b = Builder::seen_from(Vec3::ZERO, Vec3::new(0.3, 0.5, 1.0), 120.0, 4);
+    let grey = b.diffuse(0.5);
+    b.sphere(Vec3::ZERO, 2.0, grey).flip_normals = true;
+    b.point_light(Vec3::ZERO, 3.0);
+    let (world, exact) = (b.build(), [0.75 / PI; 16]);
+    for connections in [true, false] {
+        let method = Method::Vcm(VcmConfig { connections, light_paths: Some(400), ..VcmConfig::default() });
+        let series = Series::render(&world, &method, &numbers(), 0..SEEDS, &exact);
+        let [of_noise, _] = expected(2.0);
+        for part in [Part::Variance, Part::Mse] {
+            judge(&format!("both ends, connections: {connections}"), &series.slope(part), -1.0, of_noise);
+        }
+    }
 }
 
 /// What does not blur has noise alone, ∝ 1/N: a floor under a square lamp that lies a unit above.

@@ -5,7 +5,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig};
+use nephroid::integrator::{DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, VcmConfig};
 use nephroid::light::LightKind;
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
@@ -152,7 +152,7 @@ fn a_glass_ball_in_a_glowing_room_changes_nothing() {
     }
 }
 
-/// Path tracing, and photon mapping in all ways to read its maps.
+/// Path tracing, photon mapping in all ways to read its maps, and vertex connection and merging.
 fn methods_of_fixed_radius(radius: f32) -> Vec<(String, Method)> {
     let mut methods = vec![("path".to_string(), Method::Path(PathConfig::default()))];
     for direct in [DirectSource::Rays, DirectSource::Map] {
@@ -167,6 +167,9 @@ fn methods_of_fixed_radius(radius: f32) -> Vec<(String, Method)> {
             methods.push((format!("{direct:?} {final_gather:?}"), Method::PhotonMapper(config)));
         }
     }
+    let vcm = VcmConfig { light_paths: Some(500), ..VcmConfig::default() };
+    methods.push(("vcm".to_string(), Method::Vcm(vcm.clone())));
+    methods.push(("vcm that merges".to_string(), Method::Vcm(VcmConfig { connections: false, ..vcm })));
     methods
 }
 

@@ -163,6 +163,11 @@ impl Target {
         }
     }
 
+    /// Whether light along `direction` that starts at the disk before the sphere may come by a point.
+    fn is_before(&self, point: Vec3, direction: Vec3) -> bool {
+        (point - self.center).cross(direction).length_squared() <= self.radius * self.radius
+    }
+
     /// A ray along `direction` from a point of the disk before the sphere, uniformly by area.
     pub fn ray(&self, direction: Vec3, u: Vec2) -> Ray {
         let frame = Frame::from_normal(direction);
@@ -281,6 +286,20 @@ impl Emitter {
     /// Whether its light comes from infinitely far away.
     pub fn is_infinite(&self) -> bool {
         self.is_sky() || matches!(self.kind, EmitterKind::Directional { .. })
+    }
+
+    /// Whether photons along `direction` may come by a point: those from infinitely far away are sent at what of the scene
+    /// is finite, and pass most of an endless plane by.
+    pub fn sends_by(&self, point: Vec3, direction: Vec3) -> bool {
+        match &self.kind {
+            EmitterKind::Directional { target, .. } => target.is_before(point, direction),
+            EmitterKind::Constant(sky) => sky.target.is_before(point, direction),
+            EmitterKind::Environment(map) => map.target.is_before(point, direction),
+            EmitterKind::Area(_)
+            | EmitterKind::Point { .. }
+            | EmitterKind::Spot(_)
+            | EmitterKind::Medium(_) => true,
+        }
     }
 
     /// Starts a photon path, at the targets if it is aimed and they fill less than half of what it

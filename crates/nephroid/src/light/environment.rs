@@ -46,7 +46,7 @@ pub(crate) struct EnvironmentMap {
     /// interpolation gives light.
     table: Discrete2d,
     mean_radiance: Rgb,
-    target: Target,
+    pub target: Target,
 }
 
 impl EnvironmentMap {

@@ -150,7 +150,7 @@ impl Camera<'_> {
         let lamp = match &incident.source {
             source if incident.dirac => LampEnd::dirac(world, light, source, wi, radiance, from.position()),
             Source::Surface(point) => LampEnd::on_surface(world, light, point, radiance, from.position()),
-            _ => LampEnd::in_sky(world, light, wi, radiance),
+            _ => LampEnd::in_sky(world, light, wi, radiance, from.position()),
         };
         let [there, here] = walk.trail.at.between(&lamp.place);
         set_counters(&mut walk.trail, lamp.leaving * here, lit.pdf_between(wi, lit.wo));
@@ -403,7 +403,7 @@ impl Estimator for Camera<'_> {
                 let direction = walk.ray.direction;
                 for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
                     let radiance = emitter.sky_radiance(&world.scene().textures, direction);
-                    let lamp = |_| LampEnd::in_sky(world, light, direction, radiance);
+                    let lamp = |from| LampEnd::in_sky(world, light, direction, radiance, from);
                     self.meet(&mut walk, radiance, lamp, &mut out, probe);
                 }
                 break;

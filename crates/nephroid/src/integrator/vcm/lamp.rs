@@ -21,7 +21,7 @@ pub(super) struct LampEnd {
 
 impl LampEnd {
     /// Of light with the radiance (of a lamp without extent the intensity, or the irradiance of parallel light) that it
-    /// has there.
+    /// has there; black where no path starts.
     ///
     /// Paths start as the light is given off, evenly by power: the densities of point and direction together are L cos/Φ,
     /// with Φ for the power that is sent out. So it is whether light is aimed or not, but for what aiming makes uneven.
@@ -59,11 +59,13 @@ impl LampEnd {
         Self::new(world, light, place, false, asked, radiance, toward)
     }
 
-    /// A sky, in the direction in which it is seen.
-    pub fn in_sky(world: &World, light: usize, direction: Vec3, radiance: Rgb) -> Self {
+    /// A sky, in the direction in which it is seen from `from`.
+    pub fn in_sky(world: &World, light: usize, direction: Vec3, radiance: Rgb, from: Vec3) -> Self {
         let chosen = choice(world, light, DirectLights::One);
-        let asked = world.emitters()[light].pdf_of_sky(direction) * chosen;
-        Self::new(world, light, Place::Distant { direction }, false, asked, radiance, -direction)
+        let emitter = &world.emitters()[light];
+        let asked = emitter.pdf_of_sky(direction) * chosen;
+        let sent = if emitter.sends_by(from, -direction) { radiance } else { Rgb::BLACK };
+        Self::new(world, light, Place::Distant { direction }, false, asked, sent, -direction)
     }
 
     /// A Dirac lamp that lights `from` with an irradiance, from the direction `wi`.
@@ -80,7 +82,10 @@ impl LampEnd {
             Source::Point(position) => {
                 (Place::Point { position: *position }, irradiance * from.distance_squared(*position))
             }
-            _ => (Place::Distant { direction: wi }, irradiance),
+            _ if world.emitters()[light].sends_by(from, -wi) => {
+                (Place::Distant { direction: wi }, irradiance)
+            }
+            _ => (Place::Distant { direction: wi }, Rgb::BLACK),
         };
         Self::new(world, light, place, true, chosen, strength, -wi)
     }
@@ -101,7 +106,7 @@ impl LampEnd {
         }
         if emitter.is_sky() {
             let radiance = emitter.sky_radiance(&world.scene().textures, -direction);
-            return Some(Self::in_sky(world, light, -direction, radiance));
+            return Some(Self::in_sky(world, light, -direction, radiance, from));
         }
         let incident = emitter.sample_incident(world.lookup(), from, crate::math::Vec2::ZERO)?;
         Some(Self::dirac(world, light, &incident.source, incident.wi, incident.radiance, from))

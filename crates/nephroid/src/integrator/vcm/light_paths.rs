@@ -245,6 +245,9 @@ impl Walked<'_> {
             self.trail.begin(lamp.place, lamp.leaving);
             self.trail.nodes.push(lamp.node);
         }
+        if self.trail.nodes.is_empty() {
+            return false;
+        }
         let far = self.trail.distance_to(&place) >= self.techniques.reach.apart();
         if let Some(last) = self.trail.nodes.last_mut() {
             last.far = far;
@@ -405,12 +408,14 @@ fn trace(
             let useful = match event {
                 Event::Start(Start { light, surface, ray, .. }) => {
                     walked.start = Some((*light, *surface, ray.direction));
+                    walked.trail.nodes.clear();
                     // What media give off is found by paths from the camera.
                     world.emitters()[*light].medium().is_none()
                 }
                 Event::Surface(photon, lit) => {
                     let useful = walked.land(lit, photon.power, u32::from(photon.depth), kind);
-                    if useful && techniques.to_lens > 0.0 {
+                    let fits = pass.max_depth.is_none_or(|max| u32::from(photon.depth) < max);
+                    if useful && fits && techniques.to_lens > 0.0 {
                         connections.extend(walked.seen_from_lens(lit, photon.power, kind, &mut to_lens));
                     }
                     useful

@@ -7,14 +7,22 @@
 mod camera_paths;
 mod config;
 mod densities;
+#[cfg(test)]
+mod densities_tests;
 mod grid;
 mod lamp;
+#[cfg(test)]
+mod lamp_tests;
 mod light_paths;
 mod plan;
 mod reach;
+#[cfg(test)]
+mod reach_tests;
 mod shares;
 mod trial;
 mod weights;
+#[cfg(test)]
+mod weights_tests;
 
 pub(crate) use camera_paths::Camera;
 pub use config::VcmConfig;

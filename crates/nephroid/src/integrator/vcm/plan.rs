@@ -54,7 +54,7 @@ fn plan_iteration(
     observer: &dyn Observer,
 ) -> (PhotonPlan, CameraPlan) {
     let (mut photons, mut camera) = (PhotonPlan::default(), CameraPlan::plain(1));
-    if world.lights_by_power().is_none() {
+    if world.lights_by_power().is_none() || config.light_paths == Some(0) {
         return (photons, camera);
     }
     let window = world.scene().film.window();
@@ -106,8 +106,11 @@ pub(crate) fn density(
         connects: false,
         correlation: false,
     };
+    let nothing = Density::new(&[], MERGED, 1.0);
+    if paths == 0 {
+        return (nothing, 0);
+    }
     let more = paths as f32 / TRIAL_PATHS as f32;
-    let nothing = Density::new(&[], MERGED, more);
     let at_first = AtFirst { density: &nothing, factor: 1.0 };
     let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, observer) else {
         return (nothing, 0);

@@ -1,5 +1,8 @@
 //! What merging is worth where its photons have much of their path in common.
 
+use std::f64::consts::PI;
+
+use super::densities::Kind;
 use super::weights::Whole;
 
 /// Vertices that are looked at; what lies beyond is so unlikely that it does not matter.
@@ -18,16 +21,23 @@ pub(super) struct Shares {
 impl Shares {
     pub fn new(path: &Whole<'_>, first: usize, area: f32) -> Self {
         let (count, area) = (path.len().min(MOST), f64::from(area));
-        let near = |density: f64| (density * area).min(1.0);
+        // As far around a collision is a ball. Where at a lamp light starts is left out: that is an area, a point or a
+        // direction, and the share must not depend on the unit of length.
+        let ball = 4.0 / 3.0 * area * (area / PI).sqrt();
+        let near = |i: usize, from: usize| match path.kind(i) {
+            Kind::Lamp { .. } => 1.0,
+            Kind::Medium => (path.densities(i)[from] * ball).min(1.0),
+            Kind::Surface | Kind::Specular => (path.densities(i)[from] * area).min(1.0),
+        };
         let mut of = [1.0; MOST];
         let mut light = 1.0;
         for (i, share) in of.iter_mut().enumerate().take(count) {
-            light *= near(path.densities(i)[0]);
+            light *= near(i, 0);
             *share = light;
         }
         let mut camera = 1.0;
         for i in (0..first.min(count)).rev() {
-            camera *= near(path.densities(i)[1]);
+            camera *= near(i, 1);
             let (p, q) = (camera, of[i]);
             of[i] = if p + q > 0.0 { p / (p + q - p * q) } else { 1.0 };
         }
