@@ -2,7 +2,8 @@
 //!
 //! `convergence [OPTIONS] SCENE.xml REFERENCE.exr …`, as many pairs as wanted. A pair of folders stands for all scenes of
 //! the one that have a reference of the same name in the other. A reference `A.exr,B.exr` is the mean of two that are
-//! independent of one another; its own noise is then known, and taken off.
+//! independent of one another; its own noise is then known, and taken off. Errors are relMSE, of all pixels and without the
+//! pixel in a thousand where it is largest.
 //!
 //! - `--methods photonmapper,path`: integrators, each with its defaults and the scene's `max_depth`
 //! - `--spp 8`: camera samples of each pixel in an iteration; iterations follow one another without end
@@ -26,7 +27,7 @@ use nephroid::world::World;
 use nephroid_bench::cpu_time;
 use nephroid_bench::denoise::{self, GUIDES, denoised};
 use nephroid_bench::methods::{known_names, max_depth, method};
-use nephroid_bench::reference::{Reference, pairs_of_folders};
+use nephroid_bench::reference::{Comparison, Reference, pairs_of_folders};
 use nephroid_denoise::Denoiser;
 use nephroid_formats::mitsuba::{Options, read_scene};
 use nephroid_formats::vfs::DiskFiles;
@@ -59,8 +60,9 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let denoiser = arguments.denoise.then(denoise::find).and_then(|found| {
         found.map_err(|why| eprintln!("convergence: nothing is denoised: {why} (pip install pyoidn)")).ok()
     });
-    let more = if denoiser.is_some() { ",rel_mse_denoised" } else { "" };
-    let mut csv = format!("scene,method,cpu_s,iterations,samples,rel_mse,noise,mean_ratio{more}\n");
+    let more = if denoiser.is_some() { ",denoised,denoised_without_worst" } else { "" };
+    let mut csv =
+        format!("scene,method,cpu_s,iterations,samples,rel_mse,without_worst,noise,mean_ratio{more}\n");
     for (scene, reference) in &arguments.pairs {
         csv += &report(scene, &Reference::read(reference)?, arguments, denoiser.as_ref())?;
         if let Some(path) = &arguments.csv {
@@ -86,23 +88,26 @@ fn report(
         Some(noise) => println!("The reference's own noise, {noise:.1e}, is taken off.\n"),
         None => println!("The reference's own noise is not known and not taken off.\n"),
     }
-    let [more, rule] = if denoiser.is_some() { [" denoised |", "---:|"] } else { ["", ""] };
-    println!("| method | CPU s | iterations | samples | relMSE | mean |{more}");
-    println!("|---|---:|---:|---:|---:|---:|{rule}");
+    let [more, rule] =
+        if denoiser.is_some() { [" denoised | without worst |", "---:|---:|"] } else { ["", ""] };
+    println!("| method | CPU s | iterations | samples | relMSE | without worst | mean |{more}");
+    println!("|---|---:|---:|---:|---:|---:|---:|{rule}");
     let noise = reference.noise().map(|noise| format!("{noise:.6}")).unwrap_or_default();
     let mut csv = String::new();
     for name in &arguments.methods {
         let method = method(name, max_depth).ok_or("no such integrator")?;
         converge(&world, method, reference, (arguments, denoiser), |row| {
-            let Row { cpu, iterations, samples, rel_mse, mean_ratio, denoised } = row;
+            let Row { cpu, iterations, samples, found, denoised } = row;
+            let Comparison { rel_mse, without_worst, mean_ratio } = found;
             let [cell, field] = denoised.map_or([String::new(), String::new()], |error| {
-                [format!(" {error:.5} |"), format!(",{error:.6}")]
+                let (all, rest) = (error.rel_mse, error.without_worst);
+                [format!(" {all:.5} | {rest:.5} |"), format!(",{all:.6},{rest:.6}")]
             });
             println!(
-                "| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |{cell}"
+                "| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {without_worst:.5} | {mean_ratio:.4} |{cell}"
             );
             csv += &format!(
-                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}{field}\n"
+                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{without_worst:.6},{noise},{mean_ratio:.5}{field}\n"
             );
         })?;
     }
@@ -114,10 +119,9 @@ struct Row {
     cpu: f64,
     iterations: u64,
     samples: u64,
-    rel_mse: f64,
-    mean_ratio: f64,
-    /// relMSE of the denoised picture, where there is a denoiser.
-    denoised: Option<f64>,
+    found: Comparison,
+    /// Of the denoised picture, where there is a denoiser.
+    denoised: Option<Comparison>,
 }
 
 /// Renders until the last mark, and shows the picture at each, unless that was seen already.
@@ -149,7 +153,7 @@ fn converge(
         if shown.replace(cpu) == Some(cpu) {
             continue;
         }
-        let (rel_mse, mean_ratio) = reference.compare(&session.film().develop())?;
+        let found = reference.compare(&session.film().develop())?;
         let denoised = denoiser.map(|denoiser| denoised(denoiser, &session)).transpose()?;
         let denoised = denoised.map(|picture| reference.compare(&picture)).transpose()?;
         let statistics = session.statistics();
@@ -157,9 +161,8 @@ fn converge(
             cpu: cpu.as_secs_f64(),
             iterations: statistics.iterations,
             samples: statistics.samples_per_pixel,
-            rel_mse,
-            mean_ratio,
-            denoised: denoised.map(|(rel_mse, _)| rel_mse),
+            found,
+            denoised,
         });
     }
     Ok(())

@@ -168,7 +168,7 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let path = |name: &str| home.path().join(name);
         for version in ["3.9", "3.12"] {
-            std::fs::create_dir_all(path(".pyenv/versions").join(version)).unwrap();
+            fs::create_dir_all(path(".pyenv/versions").join(version)).unwrap();
         }
         let variable = |name: &str| match name {
             "PATH" => Some("/usr/local/bin:/usr/bin:/usr/sbin::relative/bin".into()),
