@@ -1,5 +1,6 @@
 //! What the benches share: CPU time, and rounds in which the contestants take turns.
 
+pub mod denoise;
 pub mod embree;
 pub mod methods;
 pub mod reference;

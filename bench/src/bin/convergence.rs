@@ -2,16 +2,19 @@
 //!
 //! `convergence [OPTIONS] SCENE.xml REFERENCE.exr …`, as many pairs as wanted. A pair of folders stands for all scenes of
 //! the one that have a reference of the same name in the other. A reference `A.exr,B.exr` is the mean of two that are
-//! independent of one another; its own noise is then known, and taken off.
+//! independent of one another; its own noise is then known, and taken off. Errors are relMSE, of all pixels and without the
+//! pixel in a thousand where it is largest.
 //!
 //! - `--methods photonmapper,path`: integrators, each with its defaults and the scene's `max_depth`
 //! - `--spp 8`: camera samples of each pixel in an iteration; iterations follow one another without end
 //! - `--marks 1,2,5,10,20,30,60`: CPU seconds, of all threads, at which the picture is looked at
 //! - `--seed 0`
 //! - `--csv FILE`: the table once more
+//! - `--denoise`: looks at the denoised picture, too: by Open Image Denoise, found as the command finds it, with albedo and
+//!   normal. Where it is missing, that is told, and nothing is denoised
 //!
-//! Time runs while photons are traced and pixels sampled. Reading files, preparing the world and comparing pictures is
-//! not counted. A picture is looked at after the first step that ends at a mark or behind it; where it passes several, once.
+//! Time runs while photons are traced and pixels sampled. Reading files, preparing the world, denoising and comparing
+//! pictures is not counted; with `--denoise` keeping albedo and normal is. A picture is looked at after the first step that ends at a mark or behind it; where it passes several, once.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -22,8 +25,10 @@ use nephroid::observer::Silent;
 use nephroid::session::{RenderSettings, Session};
 use nephroid::world::World;
 use nephroid_bench::cpu_time;
+use nephroid_bench::denoise::{self, GUIDES, denoised};
 use nephroid_bench::methods::{known_names, max_depth, method};
-use nephroid_bench::reference::{Reference, pairs_of_folders};
+use nephroid_bench::reference::{Comparison, Reference, pairs_of_folders};
+use nephroid_denoise::Denoiser;
 use nephroid_formats::mitsuba::{Options, read_scene};
 use nephroid_formats::vfs::DiskFiles;
 
@@ -36,6 +41,7 @@ struct Arguments {
     marks: Vec<f64>,
     seed: u64,
     csv: Option<PathBuf>,
+    denoise: bool,
     /// Scenes and their references.
     pairs: Vec<(PathBuf, String)>,
 }
@@ -51,9 +57,14 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), String> {
-    let mut csv = "scene,method,cpu_s,iterations,samples,rel_mse,noise,mean_ratio\n".to_string();
+    let denoiser = arguments.denoise.then(denoise::find).and_then(|found| {
+        found.map_err(|why| eprintln!("convergence: nothing is denoised: {why} (pip install pyoidn)")).ok()
+    });
+    let more = if denoiser.is_some() { ",denoised,denoised_without_worst" } else { "" };
+    let mut csv =
+        format!("scene,method,cpu_s,iterations,samples,rel_mse,without_worst,noise,mean_ratio{more}\n");
     for (scene, reference) in &arguments.pairs {
-        csv += &report(scene, &Reference::read(reference)?, arguments)?;
+        csv += &report(scene, &Reference::read(reference)?, arguments, denoiser.as_ref())?;
         if let Some(path) = &arguments.csv {
             std::fs::write(path, &csv).map_err(|e| format!("{}: {e}", path.display()))?;
         }
@@ -62,7 +73,12 @@ fn run(arguments: &Arguments) -> Result<(), String> {
 }
 
 /// Prints a scene's table; returns the same for the CSV file.
-fn report(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<String, String> {
+fn report(
+    path: &Path,
+    reference: &Reference,
+    arguments: &Arguments,
+    denoiser: Option<&Denoiser>,
+) -> Result<String, String> {
     let file = read_scene(path, &DiskFiles, &Options::default()).map_err(|e| e.to_string())?;
     let max_depth = max_depth(&file)?;
     let world = World::new(file.scene).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -72,16 +88,26 @@ fn report(path: &Path, reference: &Reference, arguments: &Arguments) -> Result<S
         Some(noise) => println!("The reference's own noise, {noise:.1e}, is taken off.\n"),
         None => println!("The reference's own noise is not known and not taken off.\n"),
     }
-    println!("| method | CPU s | iterations | samples | relMSE | mean |\n|---|---:|---:|---:|---:|---:|");
+    let [more, rule] =
+        if denoiser.is_some() { [" denoised | without worst |", "---:|---:|"] } else { ["", ""] };
+    println!("| method | CPU s | iterations | samples | relMSE | without worst | mean |{more}");
+    println!("|---|---:|---:|---:|---:|---:|---:|{rule}");
     let noise = reference.noise().map(|noise| format!("{noise:.6}")).unwrap_or_default();
     let mut csv = String::new();
     for name in &arguments.methods {
         let method = method(name, max_depth).ok_or("no such integrator")?;
-        converge(&world, method, reference, arguments, |row| {
-            let Row { cpu, iterations, samples, rel_mse, mean_ratio } = row;
-            println!("| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {mean_ratio:.4} |");
+        converge(&world, method, reference, (arguments, denoiser), |row| {
+            let Row { cpu, iterations, samples, found, denoised } = row;
+            let Comparison { rel_mse, without_worst, mean_ratio } = found;
+            let [cell, field] = denoised.map_or([String::new(), String::new()], |error| {
+                let (all, rest) = (error.rel_mse, error.without_worst);
+                [format!(" {all:.5} | {rest:.5} |"), format!(",{all:.6},{rest:.6}")]
+            });
+            println!(
+                "| {name} | {cpu:.2} | {iterations} | {samples} | {rel_mse:.5} | {without_worst:.5} | {mean_ratio:.4} |{cell}"
+            );
             csv += &format!(
-                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{noise},{mean_ratio:.5}\n"
+                "{scene},{name},{cpu:.3},{iterations},{samples},{rel_mse:.6},{without_worst:.6},{noise},{mean_ratio:.5}{field}\n"
             );
         })?;
     }
@@ -93,8 +119,9 @@ struct Row {
     cpu: f64,
     iterations: u64,
     samples: u64,
-    rel_mse: f64,
-    mean_ratio: f64,
+    found: Comparison,
+    /// Of the denoised picture, where there is a denoiser.
+    denoised: Option<Comparison>,
 }
 
 /// Renders until the last mark, and shows the picture at each, unless that was seen already.
@@ -102,7 +129,7 @@ fn converge(
     world: &World,
     method: Method,
     reference: &Reference,
-    arguments: &Arguments,
+    (arguments, denoiser): (&Arguments, Option<&Denoiser>),
     mut seen: impl FnMut(Row),
 ) -> Result<(), String> {
     let Arguments { samples_per_pixel, marks, seed, .. } = arguments;
@@ -110,6 +137,9 @@ fn converge(
     let (mut session, mut cpu) = (None, Duration::ZERO);
     cpu += cpu_time(|| session = Some(Session::new(world, settings, &Silent)));
     let mut session = session.ok_or("no session")?;
+    if denoiser.is_some() {
+        session = session.with_aovs(&GUIDES);
+    }
     if let Some(choice) = &session.plan().choice {
         eprintln!("after {:.2} s: {}", cpu.as_secs_f64(), choice.reason());
     }
@@ -123,14 +153,16 @@ fn converge(
         if shown.replace(cpu) == Some(cpu) {
             continue;
         }
-        let (rel_mse, mean_ratio) = reference.compare(&session.film().develop())?;
+        let found = reference.compare(&session.film().develop())?;
+        let denoised = denoiser.map(|denoiser| denoised(denoiser, &session)).transpose()?;
+        let denoised = denoised.map(|picture| reference.compare(&picture)).transpose()?;
         let statistics = session.statistics();
         seen(Row {
             cpu: cpu.as_secs_f64(),
             iterations: statistics.iterations,
             samples: statistics.samples_per_pixel,
-            rel_mse,
-            mean_ratio,
+            found,
+            denoised,
         });
     }
     Ok(())
@@ -144,9 +176,14 @@ impl Arguments {
             marks: vec![1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0],
             seed: 0,
             csv: None,
+            denoise: false,
             pairs: Vec::new(),
         };
         while let Some(word) = words.next() {
+            if word == "--denoise" {
+                arguments.denoise = true;
+                continue;
+            }
             if word.starts_with("--") && !OPTIONS.contains(&word.as_str()) {
                 return Err(format!("no option is called {word}"));
             }

@@ -1,14 +1,13 @@
 //! Denoising of pictures where they are written, by a library that the user has installed.
 
 use std::env;
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 use nephroid::color::Rgb;
 use nephroid::film::Aov;
-use nephroid_denoise::{Denoiser, LoadError, Search};
+use nephroid_denoise::{Denoiser, LoadError, Search, python_prefixes};
 use serde_json::{Value, json};
 
 use crate::exit::Failure;
@@ -96,36 +95,6 @@ fn explain(error: &LoadError) -> String {
     format!("--denoise: {error}{way}")
 }
 
-/// Folders that Python may be installed in, as far as variables of the environment tell.
-fn python_prefixes(variable: &dyn Fn(&str) -> Option<OsString>) -> Vec<PathBuf> {
-    let folder = |name: &str| variable(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let below = |folder: Option<PathBuf>, name: &str| folder.map(|folder| folder.join(name));
-    let mut prefixes: Vec<PathBuf> = ["VIRTUAL_ENV", "CONDA_PREFIX"].into_iter().filter_map(folder).collect();
-    let path = variable("PATH").unwrap_or_default();
-    prefixes.extend(env::split_paths(&path).filter_map(|bin| bin.parent().map(Path::to_owned)));
-    prefixes.extend(below(folder("HOME"), ".local"));
-    // Where each version of Python has a folder of its own.
-    let families = [
-        below(folder("PYENV_ROOT").or_else(|| below(folder("HOME"), ".pyenv")), "versions"),
-        below(folder("HOME"), "Library/Python"),
-        below(folder("APPDATA"), "Python"),
-        below(folder("LOCALAPPDATA"), "Programs/Python"),
-    ];
-    for family in families.into_iter().flatten() {
-        let mut versions: Vec<PathBuf> =
-            family.read_dir().into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
-        versions.sort();
-        prefixes.extend(versions.into_iter().rev());
-    }
-    let mut known = Vec::new();
-    prefixes.retain(|prefix| {
-        let is_new = prefix.is_absolute() && !known.contains(prefix);
-        known.push(prefix.clone());
-        is_new
-    });
-    prefixes
-}
-
 /// [Applies](apply) a denoiser if there is one. Gives what it did, or why it could not.
 pub fn try_to(denoiser: Option<&Denoiser>, picture: &mut Picture) -> (Option<Denoised>, Option<String>) {
     match denoiser.map(|denoiser| apply(denoiser, picture)) {
@@ -173,26 +142,5 @@ mod tests {
         let text = explain(&LoadError::NotFound { refused });
         assert!(text.contains("is not found (a: there is no such library). Get it"), "{text}");
         assert_eq!(explain(&LoadError::NoFile("a".into())), "--denoise: a: there is no such library");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn pythons_are_where_the_environment_says() {
-        let home = tempfile::tempdir().unwrap();
-        let path = |name: &str| home.path().join(name);
-        for version in ["3.9", "3.12"] {
-            std::fs::create_dir_all(path(".pyenv/versions").join(version)).unwrap();
-        }
-        let variable = |name: &str| match name {
-            "PATH" => Some("/usr/local/bin:/usr/bin:/usr/sbin::relative/bin".into()),
-            "VIRTUAL_ENV" => Some("/venv".into()),
-            "CONDA_PREFIX" => Some("".into()),
-            "HOME" => Some(home.path().into()),
-            _ => None,
-        };
-        let expected = ["/venv".into(), "/usr/local".into(), "/usr".into(), path(".local")];
-        let pyenv = [path(".pyenv/versions/3.9"), path(".pyenv/versions/3.12")];
-        assert_eq!(python_prefixes(&variable), [&expected[..], &pyenv].concat());
-        assert_eq!(python_prefixes(&|_| None), [""; 0].map(PathBuf::from));
     }
 }

@@ -11,4 +11,4 @@ mod search;
 
 pub use denoiser::{Denoiser, Picture};
 pub use error::{DenoiseError, LoadError};
-pub use search::Search;
+pub use search::{Search, python_prefixes};

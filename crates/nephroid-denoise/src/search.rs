@@ -1,5 +1,7 @@
 //! Where the library may be.
 
+use std::env;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -52,6 +54,37 @@ impl Search {
         }
         Err(LoadError::NotFound { refused })
     }
+}
+
+/// Folders that Python may be installed in, as far as variables of the environment tell, for
+/// [`Search::python_prefixes`]. `variable` gives their values.
+pub fn python_prefixes(variable: &dyn Fn(&str) -> Option<OsString>) -> Vec<PathBuf> {
+    let folder = |name: &str| variable(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let below = |folder: Option<PathBuf>, name: &str| folder.map(|folder| folder.join(name));
+    let mut prefixes: Vec<PathBuf> = ["VIRTUAL_ENV", "CONDA_PREFIX"].into_iter().filter_map(folder).collect();
+    let path = variable("PATH").unwrap_or_default();
+    prefixes.extend(env::split_paths(&path).filter_map(|bin| bin.parent().map(Path::to_owned)));
+    prefixes.extend(below(folder("HOME"), ".local"));
+    // Where each version of Python has a folder of its own.
+    let families = [
+        below(folder("PYENV_ROOT").or_else(|| below(folder("HOME"), ".pyenv")), "versions"),
+        below(folder("HOME"), "Library/Python"),
+        below(folder("APPDATA"), "Python"),
+        below(folder("LOCALAPPDATA"), "Programs/Python"),
+    ];
+    for family in families.into_iter().flatten() {
+        let mut versions: Vec<PathBuf> =
+            family.read_dir().into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+        versions.sort();
+        prefixes.extend(versions.into_iter().rev());
+    }
+    let mut known = Vec::new();
+    prefixes.retain(|prefix| {
+        let is_new = prefix.is_absolute() && !known.contains(prefix);
+        known.push(prefix.clone());
+        is_new
+    });
+    prefixes
 }
 
 /// The file that was named, or that is in the folder that was.
@@ -127,5 +160,26 @@ mod tests {
         fs::write(&file, "no library").unwrap();
         assert_eq!(named(folder.path()).unwrap(), file);
         assert_eq!(named(&file).unwrap(), file);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pythons_are_where_the_environment_says() {
+        let home = tempfile::tempdir().unwrap();
+        let path = |name: &str| home.path().join(name);
+        for version in ["3.9", "3.12"] {
+            fs::create_dir_all(path(".pyenv/versions").join(version)).unwrap();
+        }
+        let variable = |name: &str| match name {
+            "PATH" => Some("/usr/local/bin:/usr/bin:/usr/sbin::relative/bin".into()),
+            "VIRTUAL_ENV" => Some("/venv".into()),
+            "CONDA_PREFIX" => Some("".into()),
+            "HOME" => Some(home.path().into()),
+            _ => None,
+        };
+        let expected = ["/venv".into(), "/usr/local".into(), "/usr".into(), path(".local")];
+        let pyenv = [path(".pyenv/versions/3.9"), path(".pyenv/versions/3.12")];
+        assert_eq!(python_prefixes(&variable), [&expected[..], &pyenv].concat());
+        assert_eq!(python_prefixes(&|_| None), [""; 0].map(PathBuf::from));
     }
 }
