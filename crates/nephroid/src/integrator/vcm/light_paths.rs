@@ -5,22 +5,22 @@ use std::ops::Range;
 
 use super::densities::{Kind, Node, Place, Trail};
 use super::lamp::LampEnd;
+use super::light_vertex::{LightPhoton, LightVertex, place_of};
 use super::reach::AtFirst;
 use super::weights::{Technique, Techniques, Weighed, Whole};
 use crate::color::Rgb;
 use crate::film::Splatter;
 use crate::light::Source;
-use crate::material::Bsdf;
 use crate::math::{Vec2, Vec3};
-use crate::medium::Phase;
 use crate::observer::Observer;
 use crate::photon_map::{GridTree, NearestList, PhotonIndex};
 use crate::sampling::{Key, Sampler, Sequence, Stream};
+use crate::shape::SurfacePoint;
 use crate::transport::{
     Balance, Bounce, Connection, Event, Ledger, Lit, MapKind, Next, Part, PhotonKind, Scatterer, Splats,
     Start, WalkSettings, splat, walk,
 };
-use crate::world::{Hit, Surroundings, World};
+use crate::world::World;
 
 /// Light paths that are kept for connections: each path from the camera is connected to one of them.
 const KEPT: u64 = 1 << 15;
@@ -46,72 +46,6 @@ pub(super) struct Splat {
     pub luminance: f32,
     /// See [`Weighed::over_paths`].
     pub over_paths: f32,
-}
-
-/// A vertex of a light path, to be connected to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LightVertex {
-    surface: Option<(Hit, Bsdf)>,
-    position: Vec3,
-    phase: Phase,
-    wo: Vec3,
-    inside: Surroundings,
-    pub place: Place,
-    /// W that land here, those that a mask lets pass left out.
-    pub power: Rgb,
-    /// Segments up to here.
-    pub depth: u32,
-    /// See [`Trail::back`].
-    pub back: f32,
-    nodes: [u32; 2],
-}
-
-impl LightVertex {
-    fn new(lit: &Lit<'_>, place: Place, power: Rgb, depth: u32, back: f32) -> Self {
-        let (surface, position, phase) = match lit.scatterer {
-            Scatterer::Surface { hit, bsdf } => (Some((*hit, *bsdf)), hit.point.position, Phase::Isotropic),
-            Scatterer::Medium { position, phase } => (None, position, phase),
-        };
-        let (wo, inside) = (lit.wo, lit.inside);
-        Self { surface, position, phase, wo, inside, place, power, depth, back, nodes: [0; 2] }
-    }
-
-    pub fn lit(&self) -> Lit<'_> {
-        let scatterer = match &self.surface {
-            Some((hit, bsdf)) => Scatterer::Surface { hit, bsdf },
-            None => Scatterer::Medium { position: self.position, phase: self.phase },
-        };
-        Lit { scatterer, wo: self.wo, inside: self.inside }
-    }
-
-    pub fn position(&self) -> Vec3 {
-        self.position
-    }
-
-    /// What rays that are sent to it end at.
-    pub fn source(&self) -> Source {
-        match &self.surface {
-            Some((hit, _)) => Source::Surface(hit.point),
-            None => Source::Point(self.position),
-        }
-    }
-}
-
-/// A photon of a light path, to be merged with a path from the camera.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LightPhoton {
-    /// W of its path.
-    pub power: Rgb,
-    pub wi: Vec3,
-    /// The geometric one, on the side that it came from.
-    pub normal: Vec3,
-    /// See [`Trail::back`].
-    pub back: f32,
-    /// Segments up to here.
-    pub depth: u32,
-    /// Whether it met nothing but specular surfaces.
-    pub caustic: bool,
-    nodes: [u32; 2],
 }
 
 /// The light paths of one iteration.
@@ -224,7 +158,7 @@ struct Walked<'a> {
     world: &'a World,
     techniques: &'a Techniques,
     splatter: &'a Splatter,
-    start: Option<(usize, Option<crate::shape::SurfacePoint>, Vec3)>,
+    start: Option<(usize, Option<SurfacePoint>, Vec3)>,
     trail: Trail,
     at_first: AtFirst<'a>,
     found: NearestList,
@@ -355,20 +289,6 @@ impl Walked<'_> {
             });
         }
         Some(Connection { film_position: seen.film_position, light, part })
-    }
-}
-
-/// Where a vertex that scatters light lies.
-pub(super) fn place_of(world: &World, lit: &Lit<'_>) -> (Place, Vec3) {
-    match lit.scatterer {
-        Scatterer::Surface { hit, .. } => {
-            let (position, ng) = (hit.point.position, hit.point.ng);
-            (Place::Surface { position, ng }, position)
-        }
-        Scatterer::Medium { position, .. } => {
-            let sigma_t = world.matter(lit.inside).map_or(0.0, |matter| matter.sigma_t(position).mean());
-            (Place::Medium { position, sigma_t }, position)
-        }
     }
 }
 

@@ -14,11 +14,13 @@ mod lamp;
 #[cfg(test)]
 mod lamp_tests;
 mod light_paths;
+mod light_vertex;
 mod plan;
 mod reach;
 #[cfg(test)]
 mod reach_tests;
 mod shares;
+mod techniques;
 mod trial;
 mod weights;
 #[cfg(test)]

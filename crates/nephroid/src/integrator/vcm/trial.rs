@@ -22,8 +22,9 @@ const SAMPLES: u64 = 4;
 /// The share of light that paths may be unable to find: what rounding makes of paths at grazing incidence, and no more.
 const UNFOUND: f64 = 1e-4;
 
-/// Estimates are as narrow as those of this iteration.
-const NARROWING: u64 = 8;
+/// Estimates are as narrow as after this many camera samples of all pixels: those of small pictures have come further by
+/// the time that someone looks.
+const NARROW_AFTER: u64 = 1 << 21;
 
 /// What a ray and what is done at its end cost, in rays of a path tracer.
 const RAY: f64 = 1.9;
@@ -109,6 +110,9 @@ pub(crate) fn trial(
     observer: &dyn Observer,
 ) -> Option<Tried> {
     let seed = Key::new(seed, 0, Stream::Pilot).with(2).hash();
+    let window = world.scene().film.window();
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    let narrowing = (NARROW_AFTER / (pixels * u64::from(camera.samples_per_pixel)).max(1)).clamp(8, 128);
     let mut efforts = Vec::new();
     let mut paths = None;
     for connections in [false, true] {
@@ -117,7 +121,7 @@ pub(crate) fn trial(
         let mut cells = vec![Cell::default(); grid.count()];
         let mut light_rays = 0.0;
         for set in 0..SETS {
-            let key = IterationKey { seed, iteration: set, narrowing: NARROWING, watched: true };
+            let key = IterationKey { seed, iteration: set, narrowing, watched: true };
             let iteration = Iteration::new(world, &config, photons, camera, density, key, observer)?;
             let estimator = iteration.camera(world, &config, camera, density);
             let tried: Vec<Cell> = (0..grid.count() as u32)

@@ -37,10 +37,9 @@ fn random_path(sampler: &mut Sampler) -> Path {
             _ => Kind::Surface,
         });
     }
-    if let Some(first) = kinds.iter_mut().rev().find(|kind| **kind != Kind::Specular) {
-        if *first == Kind::Medium {
-            *first = Kind::Surface;
-        }
+    let first = kinds.iter_mut().rev().find(|kind| **kind != Kind::Specular);
+    if let Some(first) = first.filter(|kind| **kind == Kind::Medium) {
+        *first = Kind::Surface;
     }
     let mut density = || libm::expf(12.0 * sampler.next_1d() - 6.0);
     let densities = (0..count).map(|_| [density(), density()]).collect();
