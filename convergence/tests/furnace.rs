@@ -91,7 +91,8 @@ fn few_methods(max_depth: Option<u32>) -> Vec<(&'static str, Method)> {
     };
     let vcm = VcmConfig {
         mapper: PhotonMapperConfig { max_depth, ..Default::default() },
-        light_paths: Some(500),
+        // As many as there are pixels, for one sample of each: paths are long.
+        light_paths: Some(64),
         ..VcmConfig::default()
     };
     vec![

@@ -130,17 +130,18 @@ pub struct RenderArgs {
 #[derive(Args, Clone, Copy, Debug, Default)]
 #[command(next_help_heading = "When to stop (the first that is reached; else the scene's sample_count)")]
 pub struct LimitArgs {
-    /// Camera samples of each pixel, in all
+    /// Camera samples of each pixel, in all; ppm and vcm, and auto with them, take whole passes
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub spp: Option<u32>,
-    /// Passes: photons, and the scene's sample_count of camera samples (with --spp, its share)
+    /// Passes: photons, and the scene's sample_count of camera samples (with --spp, its share); ppm, vcm and auto decide
+    /// how many themselves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub passes: Option<u64>,
     /// Seconds, from the start of rendering
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
-    /// The error of the picture that it states itself, with a probability of 95 % and as 5% or 5; photonmapper
-    /// alone cannot tell it
+    /// Until the upper end of the 90 % interval of the error that it states is at or below this, as 5% or 5; not with
+    /// photonmapper, which cannot tell it
     #[arg(long, value_name = "PERCENT", value_parser = percentage)]
     pub target_error: Option<f64>,
 }

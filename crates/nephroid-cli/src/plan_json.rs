@@ -63,7 +63,7 @@ pub fn from_json(value: &Value) -> Option<RenderPlan> {
 
 /// What was chosen, and the work that each integrator would take.
 pub fn chosen(choice: Choice) -> Value {
-    let Choice { pick, path, ppm, vcm, asked_for } = choice;
+    let Choice { pick, path, ppm, vcm, asked_for, paths_are_known } = choice;
     let pick = match pick {
         Pick::Path => "path",
         Pick::Ppm => "ppm",
@@ -76,6 +76,7 @@ pub fn chosen(choice: Choice) -> Value {
         "pick": pick,
         "work": { "path": work(path), "ppm": work(ppm), "vcm": work(vcm[0]), "vcm_with_connections": work(vcm[1]) },
         "asked_for": asked_for,
+        "paths_are_known": paths_are_known,
     })
 }
 
@@ -97,6 +98,7 @@ fn unchosen(value: &Value) -> Option<Choice> {
         ppm: work("ppm")?,
         vcm: [work("vcm")?, work("vcm_with_connections")?],
         asked_for: value["asked_for"].as_bool()?,
+        paths_are_known: value["paths_are_known"].as_bool()?,
     })
 }
 
@@ -158,7 +160,8 @@ mod tests {
     #[test]
     fn a_plan_survives_the_way_through_text() {
         let path = f64::INFINITY;
-        let chosen = |pick| Choice { pick, path, ppm: 0.1, vcm: [1e-9, 3.0], asked_for: false };
+        let chosen =
+            |pick| Choice { pick, path, ppm: 0.1, vcm: [1e-9, 3.0], asked_for: false, paths_are_known: true };
         let choices = [None, Some(chosen(Pick::Path)), Some(chosen(Pick::Vcm { connections: true }))];
         for (gather_rays, choice) in [None, Some(u32::MAX), Some(1)].into_iter().zip(choices) {
             let mut plan = RenderPlan { choice, ..plan() };

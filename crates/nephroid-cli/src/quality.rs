@@ -162,7 +162,14 @@ mod tests {
         assert_eq!(pixels_of(&[], &plan), None);
         let auto = [("integrator".to_owned(), "auto".to_owned())];
         for (pick, pixels) in [(Pick::Path, Pixels::Apart), (Pick::Ppm, Pixels::Together)] {
-            let choice = Some(Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for: false });
+            let choice = Some(Choice {
+                pick,
+                path: 1.0,
+                ppm: 1.0,
+                vcm: [1.0; 2],
+                asked_for: false,
+                paths_are_known: true,
+            });
             assert_eq!(pixels_of(&auto, &RenderPlan { choice, ..plan }), Some(pixels));
         }
     }

@@ -243,6 +243,9 @@ fn session<'w>(
     Ok(session.with_convergence(begun.convergence))
 }
 
+/// Steps after which a picture without any light is not waited for any longer.
+const BLACK_AFTER: u64 = 64;
+
 /// A render under way.
 struct Run<'w> {
     session: Session<'w>,
@@ -303,8 +306,14 @@ impl Run<'_> {
     /// Whether the error is small enough, where that is to be judged.
     fn is_good_enough(&self) -> bool {
         let Some(target) = self.plan.target_error else { return false };
-        quality::is_due(self.session.steps())
-            && self.session.quality().is_some_and(|quality| quality.interval[1] <= target)
+        if !quality::is_due(self.session.steps()) {
+            return false;
+        }
+        match self.session.quality() {
+            Some(quality) => quality.interval[1] <= target,
+            // A picture that stays black has no error to fall.
+            None => self.session.steps() >= BLACK_AFTER && self.session.film().mean_luminance() == 0.0,
+        }
     }
 
     /// The number of the next sample of each pixel.

@@ -206,6 +206,9 @@ impl Report<'_> {
         let (Some(target), false) = (self.plan.target_error, self.rendered.ended == Ended::GoodEnough) else {
             return;
         };
+        if self.rendered.quality.is_some_and(|quality| quality.interval[1] <= target) {
+            return;
+        }
         let target = quality::percent(target);
         messages.note(&match &self.rendered.quality {
             Some(quality) => {

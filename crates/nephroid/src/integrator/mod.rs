@@ -8,6 +8,7 @@ mod path;
 mod photon_mapper;
 mod probe;
 pub(crate) mod progressive;
+mod quiet;
 pub(crate) mod vcm;
 
 pub use auto::{AutoConfig, Choice, Pick};
@@ -22,6 +23,7 @@ pub(crate) use photon_mapper::{Guides, Maps, PhotonMapper, Turn};
 pub(crate) use probe::{AovProbe, Estimator, Found, LookUp, Met, Passed, Probe};
 pub use probe::{FromVolume, LightPart, MapName, MediumLight};
 pub use progressive::PpmConfig;
+pub(crate) use quiet::Quiet;
 pub use vcm::VcmConfig;
 
 use crate::color::Rgb;

@@ -38,12 +38,14 @@ pub struct Choice {
     pub vcm: [f64; 2],
     /// Whether settings ask for something that nothing else has.
     pub asked_for: bool,
+    /// Whether it can be told what paths find: not where specular surfaces and media come together.
+    pub paths_are_known: bool,
 }
 
 impl Choice {
     pub(super) fn nothing_tried() -> Self {
         let (path, ppm, vcm) = (f64::INFINITY, f64::INFINITY, [f64::INFINITY; 2]);
-        Self { pick: Pick::Ppm, path, ppm, vcm, asked_for: false }
+        Self { pick: Pick::Ppm, path, ppm, vcm, asked_for: false, paths_are_known: true }
     }
 
     /// With the pick that follows from the numbers.
@@ -86,7 +88,9 @@ impl Choice {
         let vcm = without.min(with);
         let times = |other: f64, own: f64| format!("{:.1} times", other / own);
         let of_paths = |own: f64| {
-            if self.path.is_infinite() {
+            if !self.paths_are_known {
+                "whether paths from the camera find all light cannot be told".to_owned()
+            } else if self.path.is_infinite() {
                 "there is light that paths from the camera cannot find".to_owned()
             } else {
                 format!("paths from the camera alone would take {} the work", times(self.path, own))

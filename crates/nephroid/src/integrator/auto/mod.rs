@@ -31,7 +31,8 @@ pub(crate) fn plan(
 ) -> (PhotonPlan, CameraPlan, Choice) {
     let (photons, camera, of_ppm) = progressive::plan(world, &config.ppm, seed, observer);
     let mut work = Choice::nothing_tried();
-    work.ppm = of_ppm.work();
+    // What saw no light at all tells nothing.
+    work.ppm = if of_ppm.variance > 0.0 { of_ppm.work() } else { f64::INFINITY };
     if config.maps_only || needs_maps(&config.ppm.mapper) {
         return (photons, camera, Choice { pick: Pick::Ppm, asked_for: true, ..work });
     }
@@ -51,6 +52,7 @@ pub(crate) fn plan(
     let of_path = path_trial::trial(world, &path_config, seed);
     if let Some(tried) = tried {
         work.vcm = tried.merging.map(Effort::work);
+        work.paths_are_known = seen;
         // What a lamp without extent sends by specular surfaces they never find, however little of it the trial saw.
         let hidden = photons.caustic.expected_photons > 0 && world.has_dirac_lamps();
         if seen && !hidden && tried.paths.variance.is_finite() {
@@ -58,7 +60,7 @@ pub(crate) fn plan(
         }
     } else {
         // All is dark, or nearly so: whatever there is, photons may find.
-        return (photons, camera, Choice { pick: Pick::Ppm, ..work });
+        return (photons, camera, Choice::nothing_tried());
     }
     let choice = work.picked();
     match choice.pick {

@@ -10,8 +10,8 @@ mod trial;
 
 pub use config::PpmConfig;
 
-use super::Effort;
 use super::photon_mapper::{CameraPlan, FinalGather, Guides, Maps, Turn};
+use super::{Effort, Quiet};
 use crate::observer::Observer;
 use crate::photon_map::Blur;
 use crate::sampling::{Key, Stream};
@@ -27,15 +27,6 @@ const TRIAL_EMIT_MAX: u64 = 10;
 
 /// Paths for a map that trials found empty: in trials, and in each iteration.
 const PATHS_IN_VAIN: u64 = 4096;
-
-/// Stops, but tells nothing: what is tried is no part of the render.
-struct Quiet<'a>(&'a dyn Observer);
-
-impl Observer for Quiet<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.cancelled()
-    }
-}
 
 /// The seed of what is tried before a render.
 fn pilot_seed(seed: u64) -> u64 {

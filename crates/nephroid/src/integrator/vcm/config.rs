@@ -6,7 +6,7 @@ pub struct VcmConfig {
     /// What is the same as in photon mapping: the longest path, and how light is estimated that media scatter to the camera.
     /// The rest counts for nothing.
     pub mapper: PhotonMapperConfig,
-    /// Light paths of each iteration, if not a quarter as many as there are pixels, and 20 000 at least.
+    /// Light paths of each iteration, if not a quarter as many as there are pixels, 20 000 at least and a million at most.
     pub light_paths: Option<u64>,
     /// Whether vertices of light paths are connected to those of camera paths.
     pub connections: bool,

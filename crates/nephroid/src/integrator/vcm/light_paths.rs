@@ -7,7 +7,7 @@ use super::densities::{Kind, Node, Place, Trail};
 use super::lamp::LampEnd;
 use super::light_vertex::{LightPhoton, LightVertex, place_of};
 use super::reach::AtFirst;
-use super::weights::{Technique, Techniques, Weighed, Whole};
+use super::weights::{MOST_CONNECTED, Technique, Techniques, Weighed, Whole};
 use crate::color::Rgb;
 use crate::film::Splatter;
 use crate::light::Source;
@@ -206,7 +206,7 @@ impl Walked<'_> {
             self.photons
                 .push((position, LightPhoton { power, wi: lit.wo, normal, back, depth, caustic, nodes }));
         }
-        if self.kept {
+        if self.kept && self.trail.nodes.len() <= MOST_CONNECTED {
             let vertex = LightVertex::new(lit, place, self.landed(lit, power), depth, back);
             self.vertices.push(LightVertex { nodes, ..vertex });
         }

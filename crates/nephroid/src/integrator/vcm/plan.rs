@@ -5,7 +5,7 @@ use super::light_paths::{LightPass, LightPaths};
 use super::reach::{AtFirst, Density, Reach};
 use super::weights::Techniques;
 use crate::integrator::photon_mapper::CameraPlan;
-use crate::integrator::{PpmConfig, progressive};
+use crate::integrator::{PpmConfig, Quiet, progressive};
 use crate::observer::Observer;
 use crate::sampling::{Key, Stream};
 use crate::transport::{MapPlan, PhotonPlan};
@@ -17,7 +17,10 @@ const MERGED: u32 = 4;
 /// Light paths of an iteration at least: fewer would blur more than needs be.
 const FEWEST_PATHS: u64 = 20_000;
 
-/// Light paths of the trial that tells how densely their photons lie.
+/// And at most: they are held in memory, some hundred bytes for each vertex.
+const MOST_PATHS: u64 = 1_000_000;
+
+/// Light paths of the trial that tells how densely their photons lie: at most so many, else as many as an iteration has.
 const TRIAL_PATHS: u64 = 16_384;
 
 /// Plans what an iteration does.
@@ -59,7 +62,7 @@ fn plan_iteration(
     }
     let window = world.scene().film.window();
     let pixels = u64::from(window.width) * u64::from(window.height);
-    let paths = config.light_paths.unwrap_or((pixels / 4).max(FEWEST_PATHS));
+    let paths = config.light_paths.unwrap_or((pixels / 4).clamp(FEWEST_PATHS, MOST_PATHS));
     camera.samples_per_pixel = (2 * paths / pixels).clamp(1, 16) as u32;
     if let Some((planned, of_ppm)) = beside {
         photons = in_media(world, config, planned, of_ppm, &camera);
@@ -96,7 +99,7 @@ pub(crate) fn density(
     let pass = LightPass {
         seed,
         iteration: 0,
-        paths: TRIAL_PATHS,
+        paths: paths.min(TRIAL_PATHS),
         max_depth: config.mapper.max_depth,
         watched: false,
     };
@@ -110,9 +113,9 @@ pub(crate) fn density(
     if paths == 0 {
         return (nothing, 0);
     }
-    let more = paths as f32 / TRIAL_PATHS as f32;
+    let more = paths as f32 / pass.paths as f32;
     let at_first = AtFirst { density: &nothing, factor: 1.0 };
-    let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, observer) else {
+    let Some(trial) = LightPaths::trace(world, &pass, &everything, at_first, &Quiet(observer)) else {
         return (nothing, 0);
     };
     let stored = (trial.photon_count() as f32 * more) as u64;

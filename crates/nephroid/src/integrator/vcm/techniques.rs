@@ -5,7 +5,7 @@ use super::camera_paths::{Camera, Walk, book};
 use super::densities::{Place, Trail};
 use super::lamp::LampEnd;
 use super::light_vertex::LightVertex;
-use super::weights::{Technique, Weighed, Whole};
+use super::weights::{MOST_CONNECTED, Technique, Weighed, Whole};
 use crate::color::Rgb;
 use crate::integrator::{Components, Found, LightPart, Probe};
 use crate::light::Source;
@@ -111,7 +111,7 @@ impl Camera<'_> {
         sample: &mut PixelSample,
         probe: &mut impl Probe,
     ) -> Rgb {
-        if !self.techniques.connects {
+        if !self.techniques.connects || walk.trail.nodes.len() > MOST_CONNECTED {
             return Rgb::BLACK;
         }
         let mut sum = Rgb::BLACK;

@@ -8,7 +8,7 @@ use super::{Density, Iteration, IterationKey, VcmConfig};
 use crate::color::Rgb;
 use crate::film::FilterSampler;
 use crate::integrator::photon_mapper::CameraPlan;
-use crate::integrator::{Effort, Estimator, Found, Met, Passed, Probe};
+use crate::integrator::{Effort, Estimator, Found, Met, Passed, Probe, Quiet};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::sampling::{Key, Stream};
@@ -122,7 +122,7 @@ pub(crate) fn trial(
         let mut light_rays = 0.0;
         for set in 0..SETS {
             let key = IterationKey { seed, iteration: set, narrowing, watched: true };
-            let iteration = Iteration::new(world, &config, photons, camera, density, key, observer)?;
+            let iteration = Iteration::new(world, &config, photons, camera, density, key, &Quiet(observer))?;
             let estimator = iteration.camera(world, &config, camera, density);
             let tried: Vec<Cell> = (0..grid.count() as u32)
                 .into_par_iter()

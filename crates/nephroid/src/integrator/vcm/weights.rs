@@ -16,6 +16,10 @@ use super::densities::{Kind, Node};
 use super::reach::Reach;
 use super::shares::Shares;
 
+/// Vertices of a walk that are connected to those of the other, counted from its end: so many times so many connections
+/// there may be for a camera sample.
+pub(super) const MOST_CONNECTED: usize = 16;
+
 /// How a path was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Technique {
@@ -41,7 +45,7 @@ pub(super) struct Techniques {
     pub correlation: bool,
 }
 
-/// Both sums of a path's techniques, in units of the density of its walks connected.
+/// The sums of a path's techniques, in units of the density of its walks connected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sums {
     /// All of them.
@@ -142,7 +146,7 @@ impl Techniques {
         match s {
             _ if s == count => f64::from(u8::from(count > 1)) * f64::from(self.to_lens),
             1 => 1.0,
-            _ => f64::from(u8::from(self.connects)),
+            _ => f64::from(u8::from(self.connects && s <= MOST_CONNECTED && count - s <= MOST_CONNECTED)),
         }
     }
 
