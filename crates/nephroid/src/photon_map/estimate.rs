@@ -11,13 +11,13 @@ use crate::math::Vec3;
 /// Photons whose normal has a smaller cosine with the query's lie on another surface and do not
 /// count: 26°. On a sphere of radius R that lets photons in up to .45 R away. Larger values cut
 /// curved surfaces short, which makes them dark; smaller ones let light around blunt edges.
-const MIN_NORMAL_COSINE: f32 = 0.9;
+pub(crate) const MIN_NORMAL_COSINE: f32 = 0.9;
 
 /// How far off the tangent plane photons count, in radii of the gather: they fill a slice of the
 /// ball and not the ball. On a sphere the chord to a photon whose normal is 26° off leaves the
 /// plane at the sine of 13°, .224: at .25 the normal always decides first, and this test only keeps
 /// out surfaces that run in parallel, such as the other step of a stair.
-const MAX_THICKNESS: f32 = 0.25;
+pub(crate) const MAX_THICKNESS: f32 = 0.25;
 
 /// Photons that must be found, if k are not, for the last of them to set the radius: the fewest for
 /// which the variance of 1/r² is finite.

@@ -29,6 +29,7 @@ pub use beams::{Beam, BeamMap, BeamWidth, Beams};
 pub use blur::Blur;
 pub use brute_force::BruteForce;
 pub use estimate::{Bandwidth, Gathered, Query, Weights, gather, gather_both};
+pub(crate) use estimate::{MAX_THICKNESS, MIN_NORMAL_COSINE};
 pub use grid_tree::GridTree;
 pub use index::{Item, NearestList, Neighbor, PhotonIndex};
 pub use kernel::Kernel;

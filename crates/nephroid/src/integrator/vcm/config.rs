@@ -20,28 +20,17 @@ pub struct VcmConfig {
 impl VcmConfig {
     /// What counts of [`Self::mapper`].
     pub(super) fn in_media(&self) -> PhotonMapperConfig {
-        let PhotonMapperConfig {
-            max_depth,
-            emit_max,
-            volume_photons,
-            volume_kind,
-            volume_estimate,
-            volume_neighbours,
-            beam_crossings,
-            march_step,
-            single_scatter,
-            ..
-        } = self.mapper;
+        let given = &self.mapper;
         PhotonMapperConfig {
-            max_depth,
-            emit_max,
-            volume_photons,
-            volume_kind,
-            volume_estimate,
-            volume_neighbours,
-            beam_crossings,
-            march_step,
-            single_scatter,
+            max_depth: given.max_depth,
+            emit_max: given.emit_max,
+            volume_photons: given.volume_photons,
+            volume_kind: given.volume_kind,
+            volume_estimate: given.volume_estimate,
+            volume_neighbours: given.volume_neighbours,
+            beam_crossings: given.beam_crossings,
+            march_step: given.march_step,
+            single_scatter: given.single_scatter,
             ..PhotonMapperConfig::default()
         }
     }

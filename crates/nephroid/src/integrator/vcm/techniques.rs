@@ -11,13 +11,9 @@ use crate::integrator::{Components, Found, LightPart, Probe};
 use crate::light::Source;
 use crate::material::Bsdf;
 use crate::math::Vec3;
+use crate::photon_map::{MAX_THICKNESS, MIN_NORMAL_COSINE};
 use crate::transport::{Lit, PixelSample};
 use crate::world::Hit;
-
-/// How far off the tangent plane photons count, in radii, and the cosine that their normal has with that of the surface
-/// at least: as in [`gather`](crate::photon_map::gather()).
-const MAX_THICKNESS: f32 = 0.25;
-const MIN_NORMAL_COSINE: f32 = 0.9;
 
 impl Camera<'_> {
     /// The weight of a lamp that the path meets.
