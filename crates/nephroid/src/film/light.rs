@@ -11,6 +11,10 @@ const DARK: f64 = 0.01;
 /// How far from what is around them pixels are thought to be before they are known: their variance over that light squared.
 const CONTRAST: f64 = 0.1;
 
+/// As many times its variance a pixel's squared distance from what is around it may be by luck: once is what a single bright
+/// sample among dark ones has, and k times what k of them have.
+const LUCK: f64 = 2.0;
+
 /// What errors of pixels are measured by.
 pub(super) struct Lights {
     /// Σ wL / Σ w of luminances, row by row.
@@ -28,7 +32,8 @@ impl Lights {
     /// A pixel's own luminance will not do for t where it is noisy: a bright sample that makes a large error makes as
     /// large a divisor, and the error of a picture with a few such samples would seem a fifth of what it is. So t is the
     /// pixel's luminance where that is known well, and the mean of its eight neighbours *without it* where it is not,
-    /// weighted as a Wiener filter does (Lee 1980, doi 10.1109/TPAMI.1980.4766994).
+    /// weighted as a Wiener filter does (Lee 1980, doi 10.1109/TPAMI.1980.4766994). A pixel that is further from its
+    /// neighbours than [`LUCK`] explains, as the image of a lamp in a mirror is, stands for itself.
     pub fn of(film: &Film) -> Self {
         let unit = film.unit();
         let (means, variances): (Vec<f64>, Vec<f64>) =
@@ -77,6 +82,8 @@ fn light(means: &[f64], variances: &[f64], width: usize, pixel: usize) -> f64 {
     }
     let around = sum / count;
     let expected = CONTRAST * around * around;
+    let seen = (own - around) * (own - around) - LUCK * variance;
+    let expected = expected.max(seen);
     // An infinite variance knows nothing of the pixel, and none at all everything.
     let known = if variance == 0.0 { 1.0 } else { expected / (expected + variance) };
     around + known * (own - around)
@@ -124,6 +131,18 @@ mod tests {
         let floor = 0.01 * (108.75f64 / 9.0).powi(2);
         let light = libm::sqrt(lights.divisors[4] - floor);
         assert!(light > 1.0 && light < 1.01, "{light}");
+    }
+
+    /// A sixth of the samples see a lamp: twenty have seen it, and no luck does that.
+    #[test]
+    fn an_image_of_a_lamp_is_its_own_measure() {
+        let mut lamp = [0.1; 9];
+        lamp[4] = 100.0;
+        let samples: Vec<[f32; 9]> = (0..120).map(|i| if i % 6 == 0 { lamp } else { [0.1; 9] }).collect();
+        let lights = Lights::of(&film(&samples));
+        let own = 0.1 + 99.9 / 6.0;
+        let light = libm::sqrt(lights.divisors[4]);
+        assert!((light / own - 1.0).abs() < 0.1, "{light} {own}");
     }
 
     #[test]
