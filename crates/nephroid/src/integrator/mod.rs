@@ -3,6 +3,7 @@
 pub(crate) mod auto;
 mod blur_probe;
 mod effort;
+mod glances;
 mod light_tracer;
 mod path;
 mod photon_mapper;

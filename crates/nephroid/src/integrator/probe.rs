@@ -160,6 +160,8 @@ pub(crate) trait Probe {
     fn surface(&mut self, _met: &Met<'_>) {}
     /// Light that was found without photons.
     fn light(&mut self, _part: LightPart, _radiance: Rgb) {}
+    /// A ray looks for lamps and nothing else, up to the next surface.
+    fn glance(&mut self) {}
     /// A medium is passed, and what it adds is multiplied as light without photons is.
     fn medium(&mut self, _passed: &Passed) {}
     /// A photon counts in the look-up that is going on, with the direct light or with the other. `_of_half` is what it
@@ -200,6 +202,11 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     fn light(&mut self, part: LightPart, radiance: Rgb) {
         self.0.light(part, radiance);
         self.1.light(part, radiance);
+    }
+
+    fn glance(&mut self) {
+        self.0.glance();
+        self.1.glance();
     }
 
     fn medium(&mut self, passed: &Passed) {

@@ -23,33 +23,47 @@ pub(crate) struct CameraPass {
     pub samples: u32,
 }
 
+/// Names the numbers of samples beside others: more than what tells branches of a path apart.
+const BESIDE: u64 = 1 << 32;
+
 /// One sample of a pixel, as an integrator meets it.
 #[derive(Clone, Debug)]
-pub(crate) struct PixelSample {
+pub(crate) struct PixelSample<'f> {
     pub ray: Ray,
     /// Names the pixel and the purpose; derive the keys of further sequences from it.
     pub key: Key,
     /// Number of the sample within the pixel and the iteration, or the series of them.
     pub index: u64,
     pub sampler: Sampler,
+    /// What it counts for by the filter.
+    pub weight: f32,
+    filter: &'f FilterSampler,
+    pixel: (u32, u32),
 }
 
-impl PixelSample {
+impl<'f> PixelSample<'f> {
     /// A sample of the pixel that `key` names, and its weight by the filter.
     pub fn new(
         world: &World,
-        filter: &FilterSampler,
+        filter: &'f FilterSampler,
         key: Key,
-        (x, y): (u32, u32),
+        pixel: (u32, u32),
         index: u64,
     ) -> (Self, f32) {
         let mut sampler = Sampler::new(Sequence::Sobol, key, index);
         let offset = filter.sample(sampler.next_2d());
         // Drawn without a lens, too, so that later sets of four stay aligned.
         let u_lens = sampler.next_2d();
+        let (x, y) = pixel;
         let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
         let ray = world.camera().ray(position, u_lens);
-        (Self { ray, key, index, sampler }, offset.weight)
+        let weight = offset.weight;
+        (Self { ray, key, index, sampler, weight, filter, pixel }, weight)
+    }
+
+    /// Another of the same pixel, by numbers of its own, and its weight.
+    pub fn beside(&self, world: &World, index: u64) -> (Self, f32) {
+        Self::new(world, self.filter, self.key.with(BESIDE), self.pixel, index)
     }
 }
 

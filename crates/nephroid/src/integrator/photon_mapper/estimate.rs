@@ -10,6 +10,7 @@ use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
 use super::{Guides, Maps};
 use crate::color::Rgb;
+use crate::integrator::glances::{are_worth_it, glance, seen};
 use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
 use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
 use crate::math::{Ray, Vec3};
@@ -77,6 +78,8 @@ pub(crate) struct PhotonMapper<'a> {
     haze_bandwidth: Bandwidth,
     /// Radius of the estimates where gather rays land.
     global_radius: f32,
+    /// Whether lamps are looked for by rays of their own.
+    glances: bool,
 }
 
 /// The way of a camera path that was split at specular surfaces.
@@ -148,6 +151,7 @@ impl<'a> PhotonMapper<'a> {
             afterglow_bandwidth: bandwidth(&maps.afterglow, of_caustic),
             haze_bandwidth: bandwidth(&maps.haze, of_global),
             global_radius: global_radius * maps.blur.factor(2),
+            glances: are_worth_it(world),
         }
     }
 
@@ -202,17 +206,13 @@ impl<'a> PhotonMapper<'a> {
                 throughput *= through;
                 tools.probe.carry(throughput);
             }
-            let Some(hit) = hit else {
-                let sky = self.world.sky(way.ray.direction);
-                out.emitted += throughput * sky;
-                tools.probe.light(LightPart::Emitted, sky);
-                return;
-            };
             let wo = -way.ray.direction;
-            if let Some((_, emitted)) = self.world.emitted(&hit, wo) {
+            if !self.glances {
+                let emitted = seen(self.world, hit.as_ref(), wo);
                 out.emitted += throughput * emitted;
                 tools.probe.light(LightPart::Emitted, emitted);
             }
+            let Some(hit) = hit else { return };
             let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
@@ -395,6 +395,10 @@ impl Estimator for PhotonMapper<'_> {
             &mut Tools { neighbors, profile: Profile::default(), probe },
             &mut out,
         );
+        if self.glances {
+            probe.begin(None, Rgb::WHITE);
+            out.emitted = glance(self.world, sample, self.config.max_depth, probe);
+        }
         out
     }
 }

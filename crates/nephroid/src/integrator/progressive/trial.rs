@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::PpmConfig;
 use crate::color::Rgb;
 use crate::film::FilterSampler;
+use crate::integrator::glances::COST_OF_GLANCE;
 use crate::integrator::photon_mapper::{CameraPlan, Guides, Maps, PhotonMapper, Turn};
 use crate::integrator::{Components, Estimator, LightPart, LookUp, Met, Passed, Probe};
 use crate::observer::Observer;
@@ -128,6 +129,10 @@ impl Probe for Counts {
 
     fn surface(&mut self, _: &Met<'_>) {
         self.ray();
+    }
+
+    fn glance(&mut self) {
+        self.plain += COST_OF_GLANCE;
     }
 
     fn medium(&mut self, passed: &Passed) {

@@ -8,6 +8,7 @@ use super::light_vertex::place_of;
 use super::reach::AtFirst;
 use super::weights::Techniques;
 use crate::color::Rgb;
+use crate::integrator::glances::{are_worth_it, glance};
 use crate::integrator::photon_mapper::PhotonMapper;
 use crate::integrator::{Components, Estimator, LightPart, Met, Probe};
 use crate::material::{Transport, segments_by};
@@ -152,6 +153,9 @@ impl Estimator for Camera<'_> {
         probe.begin(None, Rgb::WHITE);
         let world = self.world;
         let mut out = Components::default();
+        if are_worth_it(world) {
+            out.emitted = glance(world, sample, self.config.mapper.max_depth, probe);
+        }
         let lens = sample.ray;
         let mut walk = Walk {
             ray: lens,

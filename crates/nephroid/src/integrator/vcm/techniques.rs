@@ -7,6 +7,7 @@ use super::lamp::LampEnd;
 use super::light_vertex::LightVertex;
 use super::weights::{MOST_CONNECTED, Technique, Weighed, Whole};
 use crate::color::Rgb;
+use crate::integrator::glances::are_worth_it;
 use crate::integrator::{Components, Found, LightPart, Probe};
 use crate::light::Source;
 use crate::material::Bsdf;
@@ -46,6 +47,11 @@ impl Camera<'_> {
         out: &mut Components,
         probe: &mut impl Probe,
     ) {
+        if walk.scattered == 0 && are_worth_it(self.world) {
+            // Glances bring it.
+            probe.technique(Found::Met, walk.throughput * radiance, 1.0);
+            return;
+        }
         let Weighed { weight, over_paths } = self.weight_of_lamp(walk, lamp);
         let light = walk.throughput * radiance * weight;
         probe.technique(Found::Met, light, over_paths);

@@ -7,6 +7,7 @@ use super::light_paths::Splat;
 use super::{Density, Iteration, IterationKey, VcmConfig};
 use crate::color::Rgb;
 use crate::film::FilterSampler;
+use crate::integrator::glances::COST_OF_GLANCE;
 use crate::integrator::photon_mapper::CameraPlan;
 use crate::integrator::{Effort, Estimator, Found, Met, Passed, Probe, Quiet};
 use crate::observer::Observer;
@@ -71,7 +72,7 @@ struct Tally {
     rough: f64,
     connections: f64,
     photons: f64,
-    media: f64,
+    besides: f64,
 }
 
 impl Probe for Tally {
@@ -80,9 +81,13 @@ impl Probe for Tally {
         self.rough += f64::from(u8::from(!met.bsdf.is_dirac()));
     }
 
+    fn glance(&mut self) {
+        self.besides += COST_OF_GLANCE;
+    }
+
     fn medium(&mut self, passed: &Passed) {
         let photons = passed.light.volume.count + passed.light.volume_caustic.count;
-        self.media += LOOK_UP + PHOTON * f64::from(photons);
+        self.besides += LOOK_UP + PHOTON * f64::from(photons);
     }
 
     fn technique(&mut self, found: Found, radiance: Rgb, over_paths: f32) {
@@ -202,7 +207,7 @@ fn try_pixel(
             + LOOK_UP * tally.rough
             + CONNECTION * tally.connections
             + PHOTON * tally.photons
-            + tally.media;
+            + tally.besides;
     }
     cell
 }
