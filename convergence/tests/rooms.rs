@@ -155,7 +155,7 @@ fn a_room_lit_through_a_keyhole_by_vcm() {
 
 #[test]
 fn a_room_lit_through_a_keyhole_by_auto() {
-    agrees("keyhole", &auto(8, 24, [0.02, 0.04]));
+    agrees("keyhole", &auto(8, 20, [0.02, 0.04]));
 }
 
 #[test]
