@@ -18,7 +18,8 @@ pub use fog::{
 pub use methods::{Contestant, every_method, every_method_but};
 pub use optics::{blurred, derivative, epanechnikov, fresnel, polygon_irradiance, root};
 pub use rooms::{
-    PixelKind, ROOM_PARTS, ROOMS, Room, RoomReference, built_in, kind_of_part, part_samples, pixel_kinds,
+    PixelKind, ROOM_PARTS, ROOMS, Room, RoomReference, built_in, coarser, kind_of_part, part_samples,
+    pixel_kinds,
 };
 use slopes::iterate_to;
 pub use slopes::{Errors, Part, Series, iterated, log_slope, single_iterations};

@@ -19,6 +19,10 @@ use crate::{Builder, iterated_renders, light_tracer, path, renders};
 const SIDE: usize = 32;
 const BLOCK: usize = 8;
 
+/// Pixels of the finer pictures' side that references of what is seen through glass are taken from: nothing is narrower
+/// than a pixel by what blurs.
+const FINE: usize = 128;
+
 /// The fewest pixels that make a part.
 const FEW: u32 = 6;
 
@@ -40,16 +44,14 @@ pub struct Room {
     samples_per_pixel: u32,
     /// The bias of the reference where glass is seen, relative: photons blur there.
     pub behind_glass: f64,
-    /// Whether bright light lies on the other side of walls without thickness, past the foot of which it is blurred.
-    pub thin_walls: bool,
 }
 
 /// The rooms.
 pub const ROOMS: [Room; 4] = [
-    Room { name: "room", path: true, samples_per_pixel: 512, behind_glass: 0.0, thin_walls: false },
-    Room { name: "keyhole", path: true, samples_per_pixel: 2048, behind_glass: 0.0, thin_walls: true },
-    Room { name: "bulb", path: false, samples_per_pixel: 1024, behind_glass: 0.02, thin_walls: false },
-    Room { name: "window", path: false, samples_per_pixel: 2048, behind_glass: 0.02, thin_walls: false },
+    Room { name: "room", path: true, samples_per_pixel: 512, behind_glass: 0.0 },
+    Room { name: "keyhole", path: true, samples_per_pixel: 4096, behind_glass: 0.0 },
+    Room { name: "bulb", path: false, samples_per_pixel: 1024, behind_glass: 0.02 },
+    Room { name: "window", path: false, samples_per_pixel: 2048, behind_glass: 0.02 },
 ];
 
 /// A built-in scene in a picture of so many pixels a side, each of which is what its own rays see.
@@ -71,18 +73,27 @@ impl Room {
     /// # Panics
     /// If the file cannot be read.
     pub fn world(&self) -> World {
-        built_in(self.name, SIDE)
+        self.world_of(SIDE)
     }
 
-    /// Renders a reference, from so many seeds of each method. Takes a minute or two for sixteen.
+    /// The same with so many pixels a side: see [`coarser`].
+    ///
+    /// # Panics
+    /// If the file cannot be read.
+    pub fn world_of(&self, side: usize) -> World {
+        built_in(self.name, side)
+    }
+
+    /// Renders a reference, from so many seeds of each method. Takes some minutes for sixteen.
     pub fn reference(&self, seeds: Range<u64>) -> RoomReference {
         let world = self.world();
         let kinds = pixel_kinds(&world);
         let exact = if self.path { path() } else { light_tracer(None) };
         let mut parts = part_samples(&renders(&world, &exact, self.samples_per_pixel, seeds.clone()), &kinds);
         if !self.path {
-            let config = PpmConfig { samples_per_pixel: Some(8), ..PpmConfig::default() };
-            let late = iterated_renders(&world, &Method::Ppm(config), 32, 1, seeds.clone());
+            let fine = self.world_of(FINE);
+            let late = iterated_renders(&fine, &Method::Ppm(PpmConfig::default()), 16, 1, seeds.clone());
+            let late: Vec<_> = late.iter().map(|picture| coarser(picture, FINE)).collect();
             parts.truncate(PARTS);
             parts.extend_from_slice(&part_samples(&late, &kinds)[PARTS..]);
         }
@@ -92,6 +103,16 @@ impl Room {
         };
         RoomReference { seeds: seeds.end - seeds.start, parts: parts.into_iter().map(summary).collect() }
     }
+}
+
+/// A finer picture, so many pixels a side, in as few as those of [`Room::world`].
+pub fn coarser(picture: &[f64], side: usize) -> Vec<f64> {
+    let ratio = side / SIDE;
+    let mut sums = vec![0.0; SIDE * SIDE];
+    for (i, value) in picture.iter().enumerate() {
+        sums[i / side / ratio * SIDE + i % side / ratio] += value / (ratio * ratio) as f64;
+    }
+    sums
 }
 
 /// What a pixel sees.
