@@ -1,4 +1,4 @@
-use super::triangle::Triangle;
+use super::triangle::{OF_CORNERS, OF_EDGE, OF_SHEAR, Triangle};
 use super::{Intersection, Mesh, ShearedRay};
 use crate::bvh::{LANES, Lanes, splat3};
 use crate::math::{Ray, Vec3};
@@ -80,6 +80,17 @@ fn edge<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0].times(b[1]).minus(a[1].times(b[0]))
 }
 
+/// What Σ w z may be off by: nothing nearer is a hit.
+#[inline(always)]
+fn error_of_sum<L: Lanes>(q: &[[L; 3]; 3], w: &[L; 3]) -> L {
+    let [x, y, z] = [0, 1, 2].map(|axis| q[0][axis].abs().larger(q[1][axis].abs()).larger(q[2][axis].abs()));
+    let edge = w[0].abs().larger(w[1].abs()).larger(w[2].abs());
+    let of_edge = L::splat(OF_EDGE).times(edge);
+    let of_corners = L::splat(OF_CORNERS).times(x.times(y));
+    let of_shear = L::splat(OF_SHEAR).times(z.times(x.plus(y)));
+    z.times(of_edge.plus(of_corners).plus(of_shear))
+}
+
 impl TriangleBlock {
     /// Of at most eight triangles: shape, its mesh, index in the mesh.
     pub fn new<'a>(triangles: impl Iterator<Item = (u32, &'a Mesh, u32)>) -> Self {
@@ -118,13 +129,16 @@ impl TriangleBlock {
         }
         let on_edge = inside & (w[0].eq(zero) | w[1].eq(zero) | w[2].eq(zero));
         let determinant = w[0].plus(w[1]).plus(w[2]);
-        let scaled =
-            w[0].times(q[0][2]).plus(w[1].times(q[1][2])).plus(w[2].times(q[2][2])).times(lanes.shear[2]);
+        let sum = w[0].times(q[0][2]).plus(w[1].times(q[1][2])).plus(w[2].times(q[2][2]));
+        let scaled = sum.times(lanes.shear[2]);
         let inverse = L::splat(1.0).over(determinant);
         let t = scaled.times(inverse);
-        let mask = inside & !on_edge & zero.lt(t) & t.lt(L::splat(t_max));
+        let mut mask = inside & !on_edge & zero.lt(t) & t.lt(L::splat(t_max));
         if mask | on_edge == 0 {
             return Hits::NONE;
+        }
+        if mask != 0 {
+            mask &= error_of_sum(&q, &w).lt(sum.abs());
         }
         let mut hits = Hits::new(mask, t, w[1].times(inverse), w[2].times(inverse));
         if on_edge != 0 {
