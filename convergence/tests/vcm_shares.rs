@@ -4,10 +4,13 @@
 //! The tests of the file share the level [`ALPHA`] by Šidák's formula: on seeds chosen afresh, correct code would fail
 //! somewhere with probability 1 %. What merging blurs is forgiven, as stated.
 
-use nephroid::integrator::{Method, VcmConfig};
-use nephroid::math::Vec3;
+use nephroid::color::Rgb;
+use nephroid::integrator::{Method, PhotonMapperConfig, VcmConfig};
+use nephroid::light::LightKind;
+use nephroid::math::{DVec3, Vec3};
+use nephroid::shape::{Geometry, Mesh};
 use nephroid::world::World;
-use nephroid_convergence::{Builder, forgiving, iterated_renders};
+use nephroid_convergence::{Builder, facing, forgiving, iterated_renders, path, renders};
 use nephroid_testkit::{ALPHA, MeanTest, sidak};
 
 /// More than scenes and ways.
@@ -20,8 +23,9 @@ const SIDE: u32 = 8;
 const SEEDS: u64 = 16;
 
 /// Each way with so many light paths: its name, what it is, and whether it merges.
-fn ways(light_paths: u64) -> Vec<(&'static str, VcmConfig)> {
-    let all = VcmConfig { light_paths: Some(light_paths), ..VcmConfig::default() };
+fn ways(light_paths: u64, max_depth: Option<u32>) -> Vec<(&'static str, VcmConfig)> {
+    let mapper = PhotonMapperConfig { max_depth, ..PhotonMapperConfig::default() };
+    let all = VcmConfig { mapper, light_paths: Some(light_paths), ..VcmConfig::default() };
     vec![
         ("neither", VcmConfig { merging: false, connections: false, ..all.clone() }),
         ("connections alone", VcmConfig { merging: false, ..all.clone() }),
@@ -63,8 +67,42 @@ fn a_ball_in_a_ball_that_shine_is_even() {
             (shape.emission, shape.flip_normals) = (Some(glow), flip);
         }
         let world = b.build();
-        for (name, config) in ways(light_paths) {
+        for (name, config) in ways(light_paths, None) {
             agree(&world, config, &format!("{name} of {light_paths}"), &[1.0; 2], 0.001);
+        }
+    }
+}
+
+/// A floor and a wall at its end, one of which is seen; the floor's shading normals lean towards the wall.
+fn bent(floor_is_seen: bool) -> Builder {
+    let (from, to) = match floor_is_seen {
+        true => (Vec3::new(0.0, 3.0, 0.0), Vec3::new(0.0, 0.0, -0.4)),
+        false => (Vec3::new(0.0, 1.0, 3.0), Vec3::new(0.0, 0.6, -1.0)),
+    };
+    let mut b = Builder::parallel_view(from, to, 0.25, SIDE, SIDE);
+    let grey = b.diffuse(0.8);
+    let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+    let lean = Vec3::new(0.0, 1.0, -1.2).normalize();
+    let floor = Mesh {
+        positions: vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        normals: vec![lean; 4],
+        ..Mesh::default()
+    };
+    b.mesh(floor, grey);
+    b.shape(Geometry::Rectangle, facing(DVec3::new(0.0, 1.0, -1.0), 1.0, DVec3::X, 0.0), grey);
+    b.light(LightKind::Point { position: Vec3::new(0.0, 1.5, 0.3), intensity: Rgb::splat(3.0) });
+    b
+}
+
+/// What comes by way of the floor is scattered there as its shading normal says, whoever finds it: merged, connected or seen.
+#[test]
+fn where_normals_lean() {
+    for floor_is_seen in [true, false] {
+        let world = bent(floor_is_seen).build();
+        let exact = picture_means(&renders(&world, &path(), 256, 0..SEEDS));
+        for (name, config) in ways(16_000, None) {
+            agree(&world, config, &format!("{name}, floor: {floor_is_seen}"), &exact, 0.02);
         }
     }
 }
