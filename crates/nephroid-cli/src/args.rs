@@ -226,7 +226,7 @@ pub struct InfoArgs {
 pub struct StudyArgs {
     /// The folder for the page, index.html; sections that are finished are kept in it, and a study that was stopped goes
     /// on with them
-    #[arg(short, long = "output", value_name = "FOLDER", default_value = "nephroid-study")]
+    #[arg(short = 'o', long = "output", value_name = "FOLDER", default_value = "nephroid-study")]
     pub folder: PathBuf,
     /// Sections to run, as fig-2-6,question-1-3 [default: all]
     #[arg(long, value_name = "ID,…", value_delimiter = ',')]

@@ -87,16 +87,22 @@ impl Number {
 
     /// As people read it, with its unit.
     pub fn text(&self) -> String {
-        format!("{} {}", format::number(self.value), self.unit).trim_end().to_owned()
+        format!("{} {}", self.rounded(self.value), self.unit).trim_end().to_owned()
     }
 
     /// Its band as people read it.
     pub fn band_text(&self) -> String {
         match self.band {
             None => "none".to_owned(),
-            Some([low, high]) if high == f64::MAX => format!("at least {}", format::number(low)),
-            Some([low, high]) => format!("{} to {}", format::number(low), format::number(high)),
+            Some([low, high]) if high == f64::MAX => format!("at least {}", self.rounded(low)),
+            Some([low, high]) => format!("{} to {}", self.rounded(low), self.rounded(high)),
         }
+    }
+
+    /// With more digits where the band is narrow.
+    fn rounded(&self, value: f64) -> String {
+        let narrow = self.band.is_some_and(|[low, high]| high - low < 2e-3 * high.abs());
+        format::rounded(value, if narrow { 6 } else { 4 })
     }
 }
 

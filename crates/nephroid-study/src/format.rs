@@ -2,6 +2,11 @@
 
 /// Four significant digits; powers of ten where there would be many zeros.
 pub fn number(value: f64) -> String {
+    rounded(value, 4)
+}
+
+/// So many significant digits.
+pub fn rounded(value: f64, significant: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -10,7 +15,7 @@ pub fn number(value: f64) -> String {
     }
     let magnitude = libm::floor(libm::log10(value.abs())) as i32;
     if (-4..7).contains(&magnitude) {
-        let digits = (3 - magnitude).max(0) as usize;
+        let digits = (significant - 1 - magnitude).max(0) as usize;
         let text = format!("{value:.digits$}");
         let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
         return text.replace('-', "−");

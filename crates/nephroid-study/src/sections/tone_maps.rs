@@ -62,7 +62,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     });
     body.strip(pictures.collect::<Result<_, _>>()?);
 
-    let luminances = Luminances::of(image);
+    let luminances: Vec<f64> = image.pixels.iter().map(|p| f64::from(p.luminance())).collect();
     let chart = CURVES.iter().try_fold(
         Chart::new("luminance, W/(m²·sr)", "value of the display").logarithmic_x().from(0.0),
         |chart, &i| -> Result<Chart, Stop> { Ok(chart.line(OPERATORS[i].1, curve(&looks[i], image))) },
@@ -72,11 +72,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         "What each makes of a grey of this picture, after the display's curve. The walls lie between 0.1 and 3.",
     )?);
 
-    let white = |i: usize| {
-        let shown = looks[i].apply(image);
-        let white = shown.pixels.iter().filter(|p| p.min_channel() >= 1.0).count();
-        100.0 * white as f64 / shown.pixels.len() as f64
-    };
+    let white = |i: usize| white_part(&looks[i].apply(image));
     let median = |i: usize| {
         let mut greens: Vec<f32> = looks[i].apply(image).pixels.iter().map(|p| p.g).collect();
         greens.sort_by(f32::total_cmp);
@@ -90,21 +86,28 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let head = ["Operator", "Flag", "Median of the display", "White pixels, %"];
     body.table("The pictures in numbers", &head, (0..OPERATORS.len()).map(row).collect());
 
-    let Luminances { minimum, maximum, log_average, log10_as_printed } = luminances;
+    let (log_average, log10_as_printed) = log_averages(&luminances);
     body.numbers(vec![
         Number::within(
-            "Largest value of L/(max − min)",
-            maximum / (maximum - minimum).max(f64::MIN_POSITIVE),
-            "",
-            [1.0, f64::MAX],
-            "It is 1 only where the minimum is 0, and never less: the printed formula does not end at 1.",
+            "White part of a ramp of greys from 1 to 2, by the maximum",
+            white_of_ramp("equalize")?,
+            "%",
+            [0.0, 1.0],
+            "Its brightest grey alone is white.",
         ),
         Number::within(
-            "Log-average luminance, 1/N in the exponent",
-            log_average,
-            "W/(m²·sr)",
-            [minimum, maximum],
-            "A mean lies between the least and the most.",
+            "White part of that ramp, by L/(max − min) as printed",
+            white_of_ramp("equalize-report")?,
+            "%",
+            [99.0, 100.0],
+            "Greys from 1 to 2, divided by 1, are all clipped: where nothing is black, the formula does not end at 1.",
+        ),
+        Number::within(
+            "Log-average luminance, 1/N in the exponent, by the median",
+            log_average / median_of(&luminances),
+            "",
+            [0.5, 2.0],
+            "Walls fill most of the picture, so that a mean of logarithms is near its middle.",
         ),
         Number::within(
             "Distance of the printed log-average from that, in powers of ten",
@@ -137,26 +140,31 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     Ok(body)
 }
 
-struct Luminances {
-    minimum: f64,
-    maximum: f64,
-    log_average: f64,
-    /// The logarithm of the report's, which is beyond what a number holds.
-    log10_as_printed: f64,
+/// The log-average as it should be, and the decimal logarithm of the report's, which is beyond what a number holds.
+fn log_averages(luminances: &[f64]) -> (f64, f64) {
+    let n = luminances.len().max(1) as f64;
+    // Black pixels would drive it.
+    let delta = 1e-6 * luminances.iter().copied().fold(0.0, f64::max);
+    let sum: f64 = luminances.iter().map(|l| libm::log(delta + l)).sum();
+    (libm::exp(sum / n), sum / std::f64::consts::LN_10 - libm::log10(n))
 }
 
-impl Luminances {
-    fn of(image: &Image) -> Self {
-        let luminances: Vec<f64> = image.pixels.iter().map(|p| f64::from(p.luminance())).collect();
-        let (minimum, maximum) =
-            luminances.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &l| (low.min(l), high.max(l)));
-        let n = luminances.len().max(1) as f64;
-        // Black pixels would drive it.
-        let delta = 1e-6 * maximum;
-        let sum: f64 = luminances.iter().map(|l| libm::log(delta + l)).sum();
-        let log10_as_printed = sum / std::f64::consts::LN_10 - libm::log10(n);
-        Self { minimum, maximum, log_average: libm::exp(sum / n), log10_as_printed }
-    }
+fn median_of(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
+
+/// Of greys from 1 to 2 in even steps, the part that is shown as white, in per cent.
+fn white_of_ramp(operator: &str) -> Result<f64, Stop> {
+    let pixels = (0..=200).map(|i| Rgb::splat(1.0 + i as f32 / 200.0)).collect();
+    Ok(white_part(&Look::named(operator)?.apply(&Image { width: 201, height: 1, pixels })))
+}
+
+/// Of a picture on a display, in per cent.
+fn white_part(shown: &Image) -> f64 {
+    let white = shown.pixels.iter().filter(|p| p.min_channel() >= 1.0).count();
+    100.0 * white as f64 / shown.pixels.len() as f64
 }
 
 /// Display values of greys that have the luminances of this picture.

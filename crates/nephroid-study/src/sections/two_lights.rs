@@ -17,8 +17,8 @@ pub const SECTION: Section = Section {
     run,
 };
 
-/// What the brightest is divided by in a picture that only one lamp lights, in stops.
-const STOPS: f32 = 0.0;
+/// An exposure at which two lamps leave little white, and one lamp is to be seen.
+const STOPS: f32 = -1.5;
 
 fn run(lab: &Lab) -> Result<Body, Stop> {
     let one = lab.render(&lab.recipe("report-2-2a"))?;
@@ -74,8 +74,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
             "As displayed, at one exposure",
             plain,
             "",
-            [1.3, 4.8],
-            "It is seen; bright places are clipped and the display's curve is flatter than light, so less than fourfold.",
+            [1.5, 3.0],
+            "It is seen. The display's curve is about light to the power of 1/2.2, of which fourfold light makes 1.9.",
         ),
     ]);
     body.finding(
