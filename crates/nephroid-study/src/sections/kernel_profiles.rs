@@ -129,7 +129,10 @@ fn run(_: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Fig 3.11",
         "The shapes, and the norms of cone, Epanechnikov and biweight kernels on surfaces.",
-        "The Gaussian integrates to 0.531 and not to 1; in media every norm is another.",
+        &format!(
+            "The Gaussian integrates to {} and not to 1; in media every norm is another.",
+            format::number(lost)
+        ),
         "Its constants are those of a filter for pixels, which reaches zero at √2 r.",
     );
     Ok(body)

@@ -94,7 +94,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     ]);
     body.finding(
         "Question 1.3",
-        "All photons carry 3 · 4π/1000 W = 37.70 mW.",
+        &format!("All photons carry 3 · 4π/1000 W = {} W.", format::number(even.any[0])),
         "Nothing, in grey. In colour the report's powers vary more than ours.",
         "Survival by the largest channel keeps that channel level; the mean of the channels does not.",
     );
