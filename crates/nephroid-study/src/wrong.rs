@@ -1,4 +1,4 @@
-//! The mistakes of the report's section 2.4, for pictures of what they do. Nothing else uses them.
+//! The report's mistakes, for pictures and numbers of what they do. Nothing else uses them.
 
 use nephroid::math::{Vec2, Vec3};
 
@@ -14,6 +14,13 @@ pub fn latitude_from_the_pole(u: Vec2) -> Vec3 {
     let across = libm::sin(latitude);
     let (x, y) = (across * libm::cos(longitude), across * libm::sin(longitude));
     Vec3::new(x as f32, y as f32, libm::cos(latitude) as f32)
+}
+
+/// Equation 2.2 of the report with photons of 1 W: all of the nearest `k`, the one that sets the radius with them, over the
+/// disc. Takes squared distances in m², of `k` photons or more, and gives W/m².
+pub fn density_of_all(mut distances_sq: Vec<f64>, k: usize) -> f64 {
+    distances_sq.sort_by(f64::total_cmp);
+    k as f64 / (std::f64::consts::PI * distances_sq[k - 1])
 }
 
 #[cfg(test)]
