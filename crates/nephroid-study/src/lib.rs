@@ -31,6 +31,7 @@
 
 mod body;
 mod chart;
+mod compare;
 mod format;
 mod keep;
 mod lab;
