@@ -47,3 +47,47 @@ fn command(settings: &Settings) -> String {
     let seed = if settings.seed == 0 { String::new() } else { format!(" --seed {}", settings.seed) };
     format!("nephroid study{quick}{seed}")
 }
+
+#[cfg(test)]
+mod tests {
+    /// The value of each colour of a block of the style sheet, linear, by name.
+    fn colours(block: &str) -> Vec<(&str, f64)> {
+        let pairs =
+            block.split([';', '{', '}']).filter_map(|pair| pair.trim().strip_prefix("--")?.split_once(": #"));
+        pairs.map(|(name, hex)| (name, luminance(hex))).collect()
+    }
+
+    /// Relative luminance of a colour in sRGB, as WCAG 2.2 has it.
+    fn luminance(hex: &str) -> f64 {
+        let channel = |i: usize| {
+            let value = f64::from(u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).unwrap()) / 255.0;
+            if value <= 0.040_45 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
+        };
+        0.2126 * channel(0) + 0.7152 * channel(1) + 0.0722 * channel(2)
+    }
+
+    fn contrast(a: f64, b: f64) -> f64 {
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn letters_and_curves_stand_out_from_both_papers() {
+        assert!((contrast(luminance("ffffff"), luminance("000000")) - 21.0).abs() < 1e-9);
+        let css = include_str!("../templates/page.css");
+        let blocks: Vec<_> = css.split(":root").skip(1).take(2).map(colours).collect();
+        assert_eq!(blocks.len(), 2);
+        for block in blocks {
+            let of = |name: &str| block.iter().find(|(own, _)| *own == name).unwrap().1;
+            // WCAG's least: 4.5 for letters, 3 for lines that say something.
+            for paper in ["paper", "panel"] {
+                for ink in ["ink", "soft", "link", "good", "bad"] {
+                    assert!(contrast(of(ink), of(paper)) >= 4.5, "{ink} on {paper}");
+                }
+                for curve in 0..8 {
+                    let name = format!("curve-{curve}");
+                    assert!(contrast(of(&name), of(paper)) >= 3.0, "{name} on {paper}");
+                }
+            }
+        }
+    }
+}

@@ -12,6 +12,9 @@ use crate::recipe::Command;
 use crate::section::{Section, Stop};
 use crate::sections::SECTIONS;
 
+/// The page is smaller than this, in bytes, so that it opens on a phone and can be sent.
+pub const MOST_BYTES: usize = 20_000_000;
+
 /// How a study is made.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -55,7 +58,8 @@ pub struct Study {
     pub bytes: usize,
     /// Whether it was stopped before its end.
     pub stopped: bool,
-    /// The sections that are in the page, with what they found.
+    /// The sections that were asked for and are in the page, with what they found. What the page has besides, from runs
+    /// before, is not judged here.
     pub finished: Vec<(&'static Section, Finished)>,
     quick: bool,
     seed: u64,
@@ -106,20 +110,24 @@ pub fn run(
         }
         done += weight(section);
     }
-    let finished: Vec<_> =
+    let mut finished: Vec<_> =
         SECTIONS.iter().filter_map(|section| Some((section, keeper.load(section.id)?))).collect();
     let page = settings.folder.join("index.html");
     let html = page::render(&finished, settings).map_err(|error| Trouble::file(&page, error))?;
     write_whole(&page, html.as_bytes())?;
+    if html.len() >= MOST_BYTES {
+        trouble.push(format!("the page has {} bytes, and should stay below {MOST_BYTES}", html.len()));
+    }
     if !trouble.is_empty() {
         return Err(Trouble::Section(trouble.join("\n")));
     }
+    finished.retain(|(section, _)| sections.iter().any(|asked| asked.id == section.id));
     let (quick, seed) = (settings.quick, settings.seed);
     Ok(Study { page, bytes: html.len(), stopped, finished, quick, seed })
 }
 
 impl Study {
-    /// The numbers that lie outside of their bands: `fig-2-1: NAME is 3 W, not 1 to 2`.
+    /// The numbers of [`Self::finished`] that lie outside of their bands: `fig-2-1: NAME is 3 W, not 1 to 2`.
     pub fn broken(&self) -> Vec<String> {
         let of_section = |(section, finished): &(&Section, Finished)| {
             let broken = finished.body.all_numbers().filter(|number| !number.holds());

@@ -33,6 +33,7 @@ fn the_quick_study_has_every_section_and_every_number_in_its_band() {
     let run = dir.run(&["study", "--quick", "--json"]).ends_with(0);
     let told = json(&run);
     assert_eq!(told["all_hold"], true, "{told}");
+    assert!(dir.read("nephroid-study/index.html").len() < 20_000_000);
     let sections = told["sections"].as_array().unwrap();
     let known: Vec<_> = nephroid_study::SECTIONS.iter().map(|section| section.id).collect();
     let ids: Vec<_> = sections.iter().map(|section| section["id"].as_str().unwrap()).collect();
@@ -132,6 +133,11 @@ fn a_number_out_of_its_band_is_told_and_ends_with_a_code_of_its_own() {
         run.stderr
     );
     assert!(page(&dir).contains("Of 7 numbers 1 lie outside of their bands."));
+    // Of other sections it says nothing, though the page still has it.
+    let run = dir.run(&["study", "--quick", "--json", "--only", "fig-2-1"]).ends_with(0);
+    let told = json(&run);
+    assert_eq!((told["all_hold"].clone(), told["sections"].as_array().unwrap().len()), (true.into(), 1));
+    assert!(page(&dir).contains("1 lie outside of their bands."));
 }
 
 #[test]

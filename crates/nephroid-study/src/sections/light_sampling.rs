@@ -45,14 +45,15 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.say(
         "The report's text lets the latitude run from −π to π, which would cover the sphere twice; its code, the arc sine of a \
          number in [−1, 1], is right. Rejection is right only if the point is moved onto the sphere afterwards. The third \
-         way is what section 2.4 of the report looked for a long time (Fig 2.12): a latitude that is taken for an angle \
-         from the pole leaves one half of the room without photons.",
+         way is our guess at what section 2.4 of the report looked for a long time (Fig 2.12), which says no more than that it \
+         was in making the ray from the angles: a latitude that is taken for an angle from the pole leaves one half of the \
+         room without photons.",
     );
     let kinds = [
         ("Solid angle", &solid_angle, "Dots evenly over two discs, one for each half of the sphere."),
         ("Rejection", &rejection, "Dots evenly over two discs, one for each half of the sphere."),
         (
-            "Wrong angles (Fig 2.12)",
+            "Wrong angles, our guess at Fig 2.12",
             &wrong,
             "All dots are in the left disc, crowded at its centre; the right disc is empty.",
         ),

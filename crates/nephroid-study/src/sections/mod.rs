@@ -9,6 +9,7 @@ mod light_sampling;
 mod mirror_wall;
 mod nearest_photon;
 mod neighbours;
+mod phong;
 mod photon_count;
 mod rays_per_pixel;
 mod sphere_in_glass;
@@ -29,6 +30,7 @@ pub const SECTIONS: &[Section] = &[
     energy::SECTION,
     direct_by_map::SECTION,
     sphere_in_glass::SECTION,
+    phong::SECTION,
     photon_count::SECTION,
     caustic_photons::SECTION,
     neighbours::SECTION,

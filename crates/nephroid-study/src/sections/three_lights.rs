@@ -52,8 +52,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          roulette keeps it so: every stored photon carries the same. The report's answer is right.",
     );
     body.say(
-        "On coloured walls the channels drift apart. The report's roulette survives by the mean of the albedo's channels, so \
-         that a photon may carry more after a bounce than before; here it survives by the largest channel, which stays level. \
+        "On coloured walls the channels drift apart. Roulette survives here by the largest channel, which stays level and never \
+         rises. \
          Where lamps differ, choosing them by power keeps photons alike, and taking each in turn does not.",
     );
     let row = |name: &str, powers: &Powers| {
@@ -95,8 +95,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Question 1.3",
         &format!("All photons carry 3 · 4π/1000 W = {} W.", format::number(even.any[0])),
-        "Nothing, in grey. In colour the report's powers vary more than ours.",
-        "Survival by the largest channel keeps that channel level; the mean of the channels does not.",
+        "Nothing: the question is about a grey scene.",
+        "In grey, survival by the albedo keeps the power as it is.",
     );
     Ok(body)
 }

@@ -48,7 +48,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          grey and bends what is brighter: it fits, as the report says.",
     );
     body.say(
-        "Two of the report's formulas are not what it did. L/(max − min) exceeds 1 wherever nothing is black. And its mean \
+        "Two of the report's formulas cannot be taken as they are printed. L/(max − min) exceeds 1 wherever nothing is black. And its mean \
          luminance has 1/N before the exponential and not in it, a misprint that comes from the paper it cites: taken at \
          its word, the mean has nothing to do with the picture, as a number below shows.",
     );
@@ -135,7 +135,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         "Fig 2.14",
         "Equalising is too dark, Reinhard's operator fits a scene with its lamp in view.",
         "L/(max − min) exceeds 1, and 1/N belongs into the exponent. White is in scaled units, and the operator acts on luminance.",
-        "The printed formulas are not those that made the pictures.",
+        "Printed as it is, the log-average of this picture is powers of ten away from its middle; which code made the report's \
+         pictures cannot be read.",
     );
     Ok(body)
 }
