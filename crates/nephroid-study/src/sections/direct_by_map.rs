@@ -15,7 +15,7 @@ pub const SECTION: Section = Section {
     id: "fig-2-4",
     report: "Fig 2.4",
     title: "direct light by rays and from photons (questions 2.3 and 2.4)",
-    weight: Weight { full: 30.0, quick: 3.0 },
+    weight: Weight { full: 40.0, quick: 3.0 },
     run,
 };
 
@@ -26,7 +26,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let (rays, map) = (lab.render(&lab.recipe("report-2-4a"))?, lab.render(&lab.recipe("report-2-4b"))?);
     // Without glass both are the same light, and all that differs is an error.
     let direct = |source: &str, photons: u64| {
-        let recipe = lab.recipe("report-2-6").set("photons", photons).set("neighbours", 200).samples(16);
+        let recipe = lab.recipe("report-2-6").set("photons", photons).set("neighbours", 200).samples(8);
         lab.render(&recipe.flag("--direct", source).flag("--show", "direct"))
     };
     let photons = lab.pick(100_000, 20_000);

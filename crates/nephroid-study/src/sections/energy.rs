@@ -18,7 +18,7 @@ pub const SECTION: Section = Section {
     id: "question-2-2",
     report: "Question 2.2",
     title: "the energy of direct and of indirect light",
-    weight: Weight { full: 25.0, quick: 3.0 },
+    weight: Weight { full: 18.0, quick: 3.0 },
     run,
 };
 

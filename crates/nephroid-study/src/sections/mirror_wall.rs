@@ -12,7 +12,7 @@ pub const SECTION: Section = Section {
     id: "fig-2-3",
     report: "Fig 2.3",
     title: "a mirror as the back wall",
-    weight: Weight { full: 40.0, quick: 5.0 },
+    weight: Weight { full: 20.0, quick: 5.0 },
     run,
 };
 
@@ -85,8 +85,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
             "Stated error of the reference",
             100.0 * reference.error()?,
             "%",
-            lab.pick([0.0, 6.0], [0.0, 10.0]),
-            "It is to be small beside what is measured by it.",
+            [0.0, 12.0],
+            "Of a pixel; what is measured by it is the mean of thousands.",
         ),
         Number::within(
             "Light in the picture by the reference",

@@ -17,7 +17,7 @@ pub const SECTION: Section = Section {
     id: "equation-2-2",
     report: "Equation 2.2",
     title: "beyond the report, what k − 1 changes",
-    weight: Weight { full: 5.0, quick: 2.0 },
+    weight: Weight { full: 8.0, quick: 2.5 },
     run,
 };
 

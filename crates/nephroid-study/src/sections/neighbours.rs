@@ -13,7 +13,7 @@ pub const SECTION: Section = Section {
     id: "fig-2-8",
     report: "Fig 2.8",
     title: "the number of neighbours",
-    weight: Weight { full: 60.0, quick: 3.0 },
+    weight: Weight { full: 40.0, quick: 3.0 },
     run,
 };
 

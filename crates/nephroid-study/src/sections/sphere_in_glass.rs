@@ -17,7 +17,7 @@ pub const SECTION: Section = Section {
     id: "fig-2-5",
     report: "Fig 2.5",
     title: "a sphere in glass (question 2.5)",
-    weight: Weight { full: 30.0, quick: 2.0 },
+    weight: Weight { full: 60.0, quick: 2.0 },
     run,
 };
 
@@ -32,7 +32,7 @@ const INTENSITY: f64 = 5.0;
 fn run(lab: &Lab) -> Result<Body, Stop> {
     let (by_rays, by_map) =
         (lab.render(&lab.recipe("report-2-5a"))?, lab.render(&lab.recipe("report-2-5b"))?);
-    let passes = lab.pick(48, 32);
+    let passes = lab.pick(10, 32);
     let progressive = lab.recipe("report-2-5b").flag("--integrator", "ppm").flag("--passes", passes);
     let reference = lab.render(&progressive)?;
     let (arrived, photons) = arrived(lab)?;
