@@ -51,7 +51,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          they can see; and photons alone have the caustic.",
     );
     body.say(
-        "The map below is a box without glass, where both should be the same: red is too bright, blue too dark. The blur shows \
+        "The map below is a box without glass, where both should be the same: red is too bright, blue too dark. Blotches are noise. The blur shows \
          along shadows and outlines. Where walls meet, half of an estimate's disc lies in the wall, so that light is missing \
          there, up to one half at the very edge.",
     );
@@ -88,7 +88,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         Picture::new(
             &errors,
             &Look::drawn(),
-            "Red and blue lines along the outlines of spheres and shadows, and blue lines where walls meet.",
+            "Red and blue lines along the outlines of spheres and shadows, blue lines where walls meet, and faint blotches elsewhere.",
             "Difference of the two: 0.2 W/(m²·sr) too bright is full red, too dark full blue",
         )?,
     ]);

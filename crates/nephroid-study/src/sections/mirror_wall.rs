@@ -27,26 +27,21 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let mut body = Body::new();
     body.say(
         "10 000 global and 20 000 caustic photons, estimates from 400, as in the report. The mirror turns the lamp's light \
-         back, so the caustic photons light the box a second time, as if from a lamp behind the wall: each sphere has a \
-         second shadow, towards the camera, and the caustic map is where it comes from.",
+         back, so the caustic photons light the box a second time, as if from a lamp behind the wall. The picture of the caustic \
+         map's light shows it: the spheres are lit from behind and their fronts are dark. It is a small part of all light.",
     );
     body.say(
-        "With 400 of 20 000 photons an estimate is wide, so that these shadows are soft where the reference has them hard, \
-         and walls are darker where they meet. Mirror and images in it are followed by rays and are exact.",
+        "With so many neighbours an estimate is wide, and walls are darker where they meet than in the reference. Mirror and \
+         images in it are followed by rays and are exact. The black part of the mirror is the open front of the box.",
     );
     let look = Look::exposed(-0.5);
     let alt = "A box with a red and a green wall and two white spheres, and all of it again in the mirror at the back";
     body.pair(
-        Picture::of(
-            &render,
-            &look,
-            &format!("{alt}; second shadows are soft."),
-            "Photon map, as in the report",
-        )?,
+        Picture::of(&render, &look, &format!("{alt}."), "Photon map, as in the report")?,
         Picture::of(
             &reference,
             &look,
-            &format!("{alt}; second shadows are hard."),
+            &format!("{alt}, with finer shadows."),
             "Reference: vertex connection and merging",
         )?,
     );
@@ -61,7 +56,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         Picture::of(
             &caustic,
             &look,
-            &format!("{alt}, with wide soft shadows that fall towards the front."),
+            &format!("{alt}, dim, with the fronts of the spheres in the dark."),
             "The caustic map's light: the lamp's, by way of the mirror",
         )?,
     ]);
@@ -116,8 +111,11 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Fig 2.3",
         "The picture, by the report's numbers: a mirror, its images, and light that it turns back.",
-        &format!("Nothing that can be read. The picture's light is {} of the reference's.", format::number(light)),
-        "What is missing is where discs reach over edges; second shadows are as soft as 400 of 20 000 photons are wide.",
+        &format!(
+            "Nothing that can be read. The picture's light is {} of the reference's.",
+            format::number(light)
+        ),
+        "What is missing is where discs reach over edges.",
     );
     Ok(body)
 }

@@ -40,6 +40,9 @@ const NEIGHBOURS: u32 = 100;
 /// The sphere comes after the walls.
 const SPHERE: u32 = WALLS;
 
+/// One of the pictures of an exponent.
+type Pick = fn(&Ways) -> &Image;
+
 /// One exponent, by three ways.
 struct Ways {
     from_map: Image,
@@ -63,7 +66,7 @@ impl Ways {
 
 fn run(lab: &Lab) -> Result<Body, Stop> {
     let side = lab.pick(144, 48);
-    let samples = lab.pick(512, 256);
+    let samples = lab.pick(192, 256);
     let all: Vec<Ways> =
         EXPONENTS.iter().map(|&exponent| ways(lab, exponent, side, samples)).collect::<Result<_, _>>()?;
     let sphere: Vec<bool> = seen(&scene(lab, 1.0, side)?.0, side)
@@ -91,7 +94,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          that of Fig 2.6 with one sphere, made in code, so these pictures have no command.",
     );
     let look = Look::exposed(0.0);
-    let rows: [(&str, &str, fn(&Ways) -> &Image); 3] = [
+    let rows: [(&str, &str, Pick); 3] = [
         ("All from the photon map", "speckled where it should shine", |ways| &ways.from_map),
         ("Photon map, sampled lobe", "with the room's reflection", |ways| &ways.sampled),
         ("Reference: path tracing", "with the room's reflection", |ways| &ways.reference),
@@ -203,8 +206,8 @@ fn ways(lab: &Lab, exponent: f32, side: u32, samples: u32) -> Result<Ways, Stop>
     for (mean, other) in reference.pixels.iter_mut().zip(&other.pixels) {
         *mean = (*mean + *other) * 0.5;
     }
-    let sampled = by(with(Show::All), 64, seed)?.image;
-    let direct = by(with(Show::Direct), 64, seed)?.image;
+    let sampled = by(with(Show::All), 32, seed)?.image;
+    let direct = by(with(Show::Direct), 32, seed)?.image;
 
     let stored = record_photons(&world, &settings, 0, lab.observer()).ok_or(Stop::Cancelled)?;
     // Their power is divided already.
