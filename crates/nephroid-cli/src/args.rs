@@ -43,6 +43,8 @@ pub enum Command {
     Photons(Box<PhotonsArgs>),
     /// Tell what the estimate of a pixel saw: surfaces, photon maps, and what they brought
     Inspect(Box<InspectArgs>),
+    /// Run the experiments of a report on photon mapping anew, and write a web page of what they show
+    Study(StudyArgs),
 }
 
 /// Reads the command line; on a mistake in it, or when asked for help, the process ends here.
@@ -215,6 +217,33 @@ pub struct InfoArgs {
     #[command(flatten)]
     pub reading: SceneArgs,
     /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `nephroid study`.
+#[derive(Args, Debug)]
+pub struct StudyArgs {
+    /// The folder for the page, index.html; sections that are finished are kept in it, and a study that was stopped goes
+    /// on with them
+    #[arg(short = 'o', long = "output", value_name = "FOLDER", default_value = "nephroid-study")]
+    pub folder: PathBuf,
+    /// Sections to run, as fig-2-6,question-1-3 [default: all]
+    #[arg(long, value_name = "ID,…", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Small pictures and large errors: a test that all of it still holds
+    #[arg(long)]
+    pub quick: bool,
+    /// Everything random follows from it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Threads to work with [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print one JSON object with every number, its band and whether it holds
     #[arg(long)]
     pub json: bool,
 }

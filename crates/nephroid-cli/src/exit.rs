@@ -17,6 +17,8 @@ pub enum Exit {
     Scene = 3,
     /// A file cannot be read or written.
     File = 4,
+    /// A number of the study lies outside of its band.
+    Band = 5,
     /// The program is wrong.
     Fault = 70,
     /// Stopped by Ctrl-C.
@@ -38,6 +40,8 @@ pub enum Failure {
     Scene(Diagnostics),
     /// A file cannot be read or written.
     File(String),
+    /// A study did not find what it should.
+    Study(String),
 }
 
 impl Failure {
@@ -62,6 +66,10 @@ impl Failure {
             Self::File(message) => {
                 console::error(message);
                 Exit::File
+            }
+            Self::Study(message) => {
+                console::error(message);
+                Exit::Band
             }
         }
     }

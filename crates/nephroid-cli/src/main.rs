@@ -38,6 +38,8 @@ mod report;
 mod resume;
 mod scenes;
 mod session_args;
+mod study;
+mod study_watch;
 mod tev;
 mod tonemap;
 mod values;
@@ -67,5 +69,6 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Info(args) => info::run(args),
         Command::Photons(args) => photons::run(args),
         Command::Inspect(args) => inspect::run(args),
+        Command::Study(args) => study::run(args),
     }
 }

@@ -18,6 +18,7 @@ mod pictures;
 mod scenes;
 mod sessions;
 mod shares;
+mod study;
 mod support;
 mod trouble;
 mod watching;

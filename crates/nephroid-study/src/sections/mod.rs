@@ -1,0 +1,40 @@
+//! The sections, in the order of the report.
+
+mod bounce_limit;
+mod caustic_photons;
+mod direct_by_map;
+mod energy;
+mod kernel_profiles;
+mod light_sampling;
+mod mirror_wall;
+mod nearest_photon;
+mod neighbours;
+mod phong;
+mod photon_count;
+mod rays_per_pixel;
+mod sphere_in_glass;
+mod three_lights;
+mod tone_maps;
+mod two_lights;
+
+use crate::section::Section;
+
+/// Every section, in the order of the page.
+pub const SECTIONS: &[Section] = &[
+    light_sampling::SECTION,
+    bounce_limit::SECTION,
+    three_lights::SECTION,
+    two_lights::SECTION,
+    mirror_wall::SECTION,
+    nearest_photon::SECTION,
+    energy::SECTION,
+    direct_by_map::SECTION,
+    sphere_in_glass::SECTION,
+    phong::SECTION,
+    photon_count::SECTION,
+    caustic_photons::SECTION,
+    neighbours::SECTION,
+    rays_per_pixel::SECTION,
+    tone_maps::SECTION,
+    kernel_profiles::SECTION,
+];
