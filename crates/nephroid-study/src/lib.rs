@@ -42,6 +42,7 @@ mod section;
 mod sections;
 mod statistics;
 mod study;
+mod tracer;
 mod wrong;
 
 pub use body::{Body, Finding, Number, Part, Table};
