@@ -71,8 +71,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     };
     let wrong = picture(1, 0.0, &Counts::default())?;
     // A picture of one sample has few of them to count.
-    picture(lab.pick(8, 64), 0.0, &of_wrong)?;
-    let right = picture(8, SHIFT, &of_right)?;
+    picture(lab.pick(2, 64), 0.0, &of_wrong)?;
+    let right = picture(lab.pick(2, 8), SHIFT, &of_right)?;
 
     let mut body = Body::new();
     body.say(
