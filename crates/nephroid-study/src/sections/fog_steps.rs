@@ -18,7 +18,7 @@ use crate::lab::Lab;
 use crate::picture::{Look, Picture};
 use crate::section::{Section, Stop, Weight};
 use crate::statistics::KolmogorovSmirnov;
-use crate::tracer;
+use crate::tracer::{self, Pinhole};
 use crate::wrong;
 
 /// Figure 3.8.
@@ -40,7 +40,7 @@ const ALBEDO: f64 = 0.4 / 0.9;
 const PHOTONS: usize = 15_000;
 
 /// The length of the steps, in m: the report does not name it.
-const STEP: f64 = 0.3;
+const STEP: f64 = 0.4;
 
 /// How far a photon flies before it interacts, if it does before `end`.
 type Distance = fn(end: f64, numbers: &mut Sampler) -> Option<f64>;
@@ -63,6 +63,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let right = lab.render(&recipe)?;
     let (steps, step_flights) = walk(lab, &world, by_steps, 1)?;
     let (law, law_flights) = walk(lab, &world, exponential, 2)?;
+    let slices = [slice(lab, &world, &steps)?, slice(lab, &world, &law)?];
     let (rings, none) = (picture(lab, &world, steps)?, picture(lab, &world, law)?);
 
     let mut body = Body::new();
@@ -75,19 +76,34 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         "The report was right to change the method. Its text then goes too far: after drawing a distance it asks once more whether the \
          photon interacts, see Fig 3.7.",
     );
-    let look = Look::exposed(3.0);
+    let look = Look::exposed(1.0);
     body.pair(
         Picture::new(
             &rings,
             &look,
             "A lamp in fog with bright concentric rings around it.",
-            "Wrong: photons by the study's own tracer, in steps of 0.3 m",
+            "Wrong: photons by the study's own tracer, in steps of 0.4 m",
         )?,
         Picture::new(
             &none,
             &look,
             "A lamp in fog with an even glow around it.",
             "Right: the same with exponential distances",
+        )?,
+    );
+    let [ring_slice, even_slice] = slices;
+    body.pair(
+        Picture::new(
+            &ring_slice,
+            &Look::drawn(),
+            "Dots on concentric rings around a lamp, and some between them.",
+            "Wrong: the photons within 15 cm of a plane through the lamp",
+        )?,
+        Picture::new(
+            &even_slice,
+            &Look::drawn(),
+            "Dots around a lamp, denser near it, without rings.",
+            "Right: the same slice",
         )?,
     );
     body.picture(Picture::of(
@@ -213,8 +229,24 @@ fn library_flights(
     Ok(first.filter_map(flight).collect())
 }
 
-/// Photons of an estimate in the fog, as the scene has it.
-const NEIGHBORS: u32 = 50;
+/// The photons near the plane through the lamp that faces the camera, as dots.
+fn slice(lab: &Lab, world: &World, photons: &VolumePhotons) -> Result<Image, Stop> {
+    lab.check()?;
+    let (camera, film) = (Pinhole::of(world)?, &world.scene().film);
+    let (lamp, _) = tracer::lamp(world)?;
+    let mut image = Image::filled(film.width, film.height, Rgb::BLACK);
+    for photon in photons.as_slice().iter().filter(|p| (p.position.z - lamp.z).abs() < 0.15) {
+        let at = camera.project(photon.position);
+        let (x, y) = (at.x as i64, at.y as i64);
+        if (0..i64::from(film.width)).contains(&x) && (0..i64::from(film.height)).contains(&y) {
+            image.pixels[(y * i64::from(film.width) + x) as usize] = Rgb::new(1.0, 0.85, 0.4);
+        }
+    }
+    Ok(image)
+}
+
+/// Photons of an estimate in the fog: few, as many would blur the rings away.
+const NEIGHBORS: u32 = 10;
 
 /// The light of the fog: short steps, each from its middle.
 fn picture(lab: &Lab, world: &World, photons: VolumePhotons) -> Result<Image, Stop> {
