@@ -106,9 +106,9 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
             "Samples of the mirror that meet it twice in a row, wrong",
             100.0 * of_wrong.part(),
             "%",
-            [0.05, 50.0],
-            "A rounded point lies inside half of the time at most, and mostly by so little that the next root is lost to rounding, \
-             too. Counted over ten thousand samples, so that one in two thousand is seen.",
+            [5.0, 95.0],
+            "Rounding leaves a point inside the sphere or outside of it, so neither never nor always. How often depends on the \
+             arithmetic and is not predicted: the band only says that the mistake is there.",
         ),
         Number::within(
             "Samples of the mirror that meet it twice in a row, shifted",
