@@ -43,6 +43,7 @@ mod section;
 mod sections;
 mod statistics;
 mod study;
+mod tracer;
 mod wrong;
 
 pub use body::{Body, Finding, Number, Part, Table};

@@ -42,6 +42,34 @@ pub fn sphere_counts(directions: &[Vec3], columns: usize, rows: usize) -> Vec<u6
     counts
 }
 
+/// The test of Kolmogorov and Smirnov of numbers against an even distribution on [0, 1].
+#[derive(Clone, Copy, Debug)]
+pub struct KolmogorovSmirnov {
+    /// The largest distance between the two distribution functions.
+    pub distance: f64,
+    /// The chance of so large a distance if the numbers are even: of many numbers, where its limit holds.
+    pub p_value: f64,
+}
+
+impl KolmogorovSmirnov {
+    /// Of numbers that should be even.
+    pub fn of_even(values: &[f64]) -> Self {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let n = sorted.len() as f64;
+        let gap = |(i, v): (usize, &f64)| (v - i as f64 / n).max((i + 1) as f64 / n - v);
+        let distance = sorted.iter().enumerate().map(gap).fold(0.0, f64::max);
+        let scaled = distance * (libm::sqrt(n) + 0.12 + 0.11 / libm::sqrt(n));
+        let term = |j: i32| {
+            let term = libm::exp(-2.0 * f64::from(j * j) * scaled * scaled);
+            if j % 2 == 1 { term } else { -term }
+        };
+        // The series of the limit converges where the distance is not tiny; there p is 1.
+        let p_value = if scaled < 0.2 { 1.0 } else { 2.0 * (1..=40).map(term).sum::<f64>() };
+        Self { distance, p_value: p_value.clamp(0.0, 1.0) }
+    }
+}
+
 /// Simpson's rule on [0, 1] with 2000 intervals: 10⁻⁸ or better for smooth functions.
 pub fn integral(f: impl Fn(f64) -> f64) -> f64 {
     let n = 2000;
@@ -71,6 +99,19 @@ mod tests {
         assert_eq!(counts.iter().sum::<u64>(), 4);
         assert_eq!(sphere_counts(&[Vec3::new(0.1, 0.1, 0.99)], 2, 2), [0, 1, 0, 0]);
         assert_eq!(sphere_counts(&[Vec3::new(-0.1, -0.1, -0.99)], 2, 2), [0, 0, 1, 0]);
+    }
+
+    #[test]
+    fn even_numbers_are_told_from_steps() {
+        let even: Vec<f64> = (0..1000).map(|i| (f64::from(i) + 0.5) / 1000.0).collect();
+        let test = KolmogorovSmirnov::of_even(&even);
+        assert!((test.distance - 0.0005).abs() < 1e-12 && test.p_value == 1.0);
+        let steps: Vec<f64> = even.iter().map(|v| libm::floor(v * 5.0) / 5.0).collect();
+        let test = KolmogorovSmirnov::of_even(&steps);
+        assert!((test.distance - 0.2).abs() < 1e-12 && test.p_value < 1e-12);
+        // The 5 % point of the limit is 1.3581: a gap of so much in 10 000 numbers.
+        let shifted: Vec<f64> = (0..10_000).map(|i| f64::from(i) / 10_000.0 * (1.0 - 0.013_56)).collect();
+        assert!((KolmogorovSmirnov::of_even(&shifted).p_value - 0.05).abs() < 2e-3);
     }
 
     #[test]

@@ -1,17 +1,26 @@
 //! The sections, in the order of the report.
 
+mod against_time;
+mod ambient_fog;
 mod bounce_limit;
 mod caustic_photons;
 mod direct_by_map;
 mod energy;
+mod fog_in_glass;
+mod fog_steps;
+mod fog_volume;
 mod kernel_profiles;
+mod kernels_compared;
+mod kernels_sharp;
 mod light_sampling;
 mod mirror_wall;
+mod mistakes;
 mod nearest_photon;
 mod neighbours;
 mod phong;
 mod photon_count;
 mod rays_per_pixel;
+mod self_hits;
 mod sphere_in_glass;
 mod three_lights;
 mod tone_maps;
@@ -35,6 +44,18 @@ pub const SECTIONS: &[Section] = &[
     caustic_photons::SECTION,
     neighbours::SECTION,
     rays_per_pixel::SECTION,
+    mistakes::POWER,
+    mistakes::COSINE,
+    mistakes::SAMPLING,
+    self_hits::SECTION,
     tone_maps::SECTION,
+    ambient_fog::SECTION,
+    fog_volume::SECTION,
+    fog_steps::SECTION,
+    fog_in_glass::SECTION,
+    fog_in_glass::PHOTONS,
     kernel_profiles::SECTION,
+    kernels_compared::SECTION,
+    kernels_sharp::SECTION,
+    against_time::SECTION,
 ];
