@@ -90,6 +90,27 @@ fn under_a_sky() {
     agrees(&world, None);
 }
 
+/// A sky that is the same everywhere is so in each pixel, with few samples and whatever weights they have.
+#[test]
+fn an_even_sky_is_even() {
+    let mut b = Builder::seen_from(Vec3::new(0.0, 0.0, 3.0), Vec3::ZERO, 40.0, SIDE as u32);
+    let glass = b.glass(1.5);
+    b.sphere(Vec3::ZERO, 0.3, glass);
+    b.light(LightKind::Constant { radiance: Rgb::splat(1.0) });
+    for filter in ["box", "tent", "gaussian", "mitchell"] {
+        b.scene.film.filter = Filter::parse(filter).expect("a filter");
+        let world = World::new(b.scene.clone()).expect("a sound scene");
+        let method = Method::PhotonMapper(PhotonMapperConfig::default());
+        for samples in [1, 4] {
+            let picture = &renders(&world, &method, samples, 0..1)[0];
+            for pixel in [0, SIDE - 1, SIDE * SIDE - 1] {
+                let light = picture[pixel];
+                assert!((light - 1.0).abs() < 1e-5, "{filter}, {samples} samples: {light}");
+            }
+        }
+    }
+}
+
 /// A medium that swallows light and scatters none.
 #[test]
 fn in_smoke() {

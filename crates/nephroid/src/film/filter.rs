@@ -52,6 +52,11 @@ impl Filter {
         }
     }
 
+    /// Whether samples may count less than nothing.
+    pub(crate) fn has_negative_lobes(self) -> bool {
+        matches!(self, Self::Mitchell { .. })
+    }
+
     /// Whether the parameters make a filter: lengths finite and above zero, `b` and `c` in [0, 1],
     /// the square that Mitchell and Netravali studied.
     pub fn is_valid(self) -> bool {

@@ -32,8 +32,8 @@ impl Lights {
     /// A pixel's own luminance will not do for t where it is noisy: a bright sample that makes a large error makes as
     /// large a divisor, and the error of a picture with a few such samples would seem a fifth of what it is. So t is the
     /// pixel's luminance where that is known well, and the mean of its eight neighbours *without it* where it is not,
-    /// weighted as a Wiener filter does (Lee 1980, doi 10.1109/TPAMI.1980.4766994). A pixel that is further from its
-    /// neighbours than [`LUCK`] explains, as the image of a lamp in a mirror is, stands for itself.
+    /// weighted as a Wiener filter does (Lee 1980, doi 10.1109/TPAMI.1980.4766994). The further a pixel is
+    /// from its neighbours than [`LUCK`] explains, as the image of a lamp in a mirror is, the more it stands for itself.
     pub fn of(film: &Film) -> Self {
         let unit = film.unit();
         let (means, variances): (Vec<f64>, Vec<f64>) =

@@ -37,21 +37,26 @@ pub(crate) fn seen(world: &World, hit: Option<&Hit>, wo: Vec3) -> Rgb {
 /// it: a sample that meets it is a white speck. No photon can tell of it, but rays that ask for nothing else are cheap, for
 /// most of them end at the first surface. Where a surface reflects and refracts, both ways are followed, and by chance only what
 /// carries little: a faint image is seen as faint, and not rarely and bright.
+///
+/// Where a filter is negative somewhere, samples have weights of either sign that are divided by their sum, and only the
+/// sample's own place goes with its weight.
 pub(crate) fn glance(
     world: &World,
     sample: &PixelSample<'_>,
     max_depth: Option<u32>,
     probe: &mut impl Probe,
 ) -> Rgb {
+    let glances = if world.scene().film.filter.has_negative_lobes() { 1 } else { GLANCES };
     let from = |glance| {
-        let (mut other, weight) = sample.beside(world, sample.index * u64::from(GLANCES) + u64::from(glance));
-        let (ray, weight) = if glance == 0 { (sample.ray, sample.weight) } else { (other.ray, weight) };
-        let whole = weight / (sample.weight * GLANCES as f32);
+        let number = sample.index * u64::from(GLANCES) + u64::from(glance);
+        let mut other = sample.beside(world, number);
+        let ray = if glance == 0 { sample.ray } else { other.ray };
         let inside = world.camera_surroundings();
-        let way = Way { ray, inside, throughput: Rgb::splat(whole), whole: whole.abs(), depth: 1 };
+        let throughput = Rgb::splat(1.0 / glances as f32);
+        let way = Way { ray, inside, throughput, whole: throughput.mean(), scale: 1.0, depth: 1 };
         way.emitted(world, max_depth, &mut other.sampler, probe)
     };
-    (0..GLANCES).map(from).sum()
+    (0..glances).map(from).sum()
 }
 
 /// A ray that looks for lamps.
@@ -60,8 +65,10 @@ struct Way {
     ray: Ray,
     inside: Surroundings,
     throughput: Rgb,
-    /// What it carries at the lens, but for its sign.
+    /// What it carries at the lens.
     whole: f32,
+    /// What refraction so far has multiplied radiance by.
+    scale: f32,
     /// Segments up to the next surface.
     depth: u32,
 }
@@ -103,16 +110,17 @@ impl Way {
             let mut branches = bsdf.dirac_lobes(wo, Transport::Radiance).map(|lobe| {
                 let lobe = lobe?;
                 let throughput = self.throughput * lobe.weight;
-                let carried = throughput.mean().abs() / (lobe.radiance_scale * self.whole);
+                let scale = self.scale * lobe.radiance_scale;
+                let carried = throughput.mean() / (scale * self.whole);
                 let unending = survival(self.throughput, self.throughput, self.depth - 1);
                 let q = (carried / LEAST).min(1.0) * unending;
                 let (ray, inside) = pass(lobe.wi);
                 let depth = self.depth + segments_by(wo, lobe.wi);
-                let on = Self { ray, inside, throughput: throughput / q, depth, ..self };
+                let on = Self { ray, inside, throughput: throughput / q, scale, depth, ..self };
                 (sampler.next_1d() < q).then_some(on)
             });
-            // The weaker one, which is less than half each time, is what recurs.
-            let carried = |way: &Option<Self>| way.map_or(0.0, |way| way.throughput.mean().abs());
+            // The weaker one is what recurs.
+            let carried = |way: &Option<Self>| way.map_or(0.0, |way| way.throughput.mean());
             branches.sort_by(|a, b| carried(b).total_cmp(&carried(a)));
             if let Some(weaker) = branches[1] {
                 found += weaker.emitted(world, max_depth, sampler, probe);

@@ -46,9 +46,15 @@ impl ShearedRay {
 /// product of the largest coordinates across the ray, and the depth times their sum (Pharr, Jakob and Humphreys 2023, §6.8.7,
 /// multiplied out). Rays that leave a triangle would else meet it again wherever the error of a coordinate is zero, as on
 /// a floor at a height of 0, and slender triangles everywhere.
+///
+/// Of a small triangle far away, whose corners are all about as far, the error is more than t by this bound, and its sign is
+/// sure all the same. So it counts only where a ray [begins](BEGINS).
 pub(super) const OF_EDGE: f32 = gamma(18);
 pub(super) const OF_CORNERS: f32 = gamma(72);
 pub(super) const OF_SHEAR: f32 = gamma(30);
+
+/// As many times the t of a hit must fit into the depth of the farthest corner for the ray to begin beside the triangle.
+pub(super) const BEGINS: f32 = 8.0;
 
 impl Triangle {
     pub fn new(mesh: &Mesh, mesh_index: u32, index: u32) -> Self {
@@ -67,7 +73,8 @@ impl Triangle {
     }
 
     /// The hit, with `u` and `v` the weights of the second and third vertex. Edges shared by two
-    /// triangles let nothing through. There is none where rounding hides whether it lies ahead.
+    /// triangles let nothing through. There is none beside the ray's origin where rounding hides
+    /// whether it lies ahead.
     #[inline]
     pub fn intersect(&self, ray: &Ray, sheared: &ShearedRay) -> Option<Intersection> {
         Self::meet(&self.p, ray, sheared)
@@ -109,12 +116,12 @@ impl Triangle {
             * (OF_EDGE * most_edge
                 + OF_CORNERS * (most.x * most.y)
                 + OF_SHEAR * (most.z * (most.x + most.y)));
-        if sum.abs() <= error {
-            return None;
-        }
         let scaled = sum * s.z;
         let inverse = 1.0 / determinant;
         let t = scaled * inverse;
+        if sum.abs() <= error && t * BEGINS < most.z * s.z.abs() {
+            return None;
+        }
         (t > 0.0 && t < ray.t_max).then_some(Intersection { t, u: w[1] * inverse, v: w[2] * inverse })
     }
 
@@ -209,6 +216,28 @@ mod tests {
                 assert!(again == 0 && rays > 50_000, "{again} of {rays}, flat: {flat}, slender: {slender}");
             }
         }
+    }
+
+    /// Grains of a millimetre half a kilometre away, at all slants.
+    #[test]
+    fn small_triangles_far_away_are_met() {
+        let mut rng = Pcg32::new(11);
+        let mut met = 0;
+        for _ in 0..50_000 {
+            let direction = warp::square_to_sphere(Vec2::from_array(rng.vec2_f32()));
+            let center = direction * 512.0;
+            let mut corner = || {
+                let [x, y] = rng.vec2_f32();
+                center + warp::square_to_sphere(Vec2::new(x, y)) * 1e-3
+            };
+            let corners = [corner(), corner(), corner()];
+            let ray = Ray::new(Vec3::ZERO, direction);
+            let target = corners.iter().copied().sum::<Vec3>() / 3.0;
+            let ray = Ray { direction: (target - ray.origin).normalize(), ..ray };
+            met += u32::from(Triangle::meet(&corners, &ray, &ShearedRay::new(ray.direction)).is_some());
+        }
+        // Rounding of the target and the direction lets some pass beside slender ones.
+        assert!(met > 45_000, "{met}");
     }
 
     /// Whatever comes from a thousandth of its size away is met.

@@ -1,4 +1,4 @@
-use super::triangle::{OF_CORNERS, OF_EDGE, OF_SHEAR, Triangle};
+use super::triangle::{BEGINS, OF_CORNERS, OF_EDGE, OF_SHEAR, Triangle};
 use super::{Intersection, Mesh, ShearedRay};
 use crate::bvh::{LANES, Lanes, splat3};
 use crate::math::{Ray, Vec3};
@@ -80,15 +80,15 @@ fn edge<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0].times(b[1]).minus(a[1].times(b[0]))
 }
 
-/// What Σ w z may be off by: nothing nearer is a hit.
+/// What Σ w z may be off by, and the depth of the farthest corner: beside a ray's origin nothing nearer is a hit.
 #[inline(always)]
-fn error_of_sum<L: Lanes>(q: &[[L; 3]; 3], w: &[L; 3]) -> L {
+fn error_of_sum<L: Lanes>(q: &[[L; 3]; 3], w: &[L; 3]) -> (L, L) {
     let [x, y, z] = [0, 1, 2].map(|axis| q[0][axis].abs().larger(q[1][axis].abs()).larger(q[2][axis].abs()));
     let edge = w[0].abs().larger(w[1].abs()).larger(w[2].abs());
     let of_edge = L::splat(OF_EDGE).times(edge);
     let of_corners = L::splat(OF_CORNERS).times(x.times(y));
     let of_shear = L::splat(OF_SHEAR).times(z.times(x.plus(y)));
-    z.times(of_edge.plus(of_corners).plus(of_shear))
+    (z.times(of_edge.plus(of_corners).plus(of_shear)), z)
 }
 
 impl TriangleBlock {
@@ -138,7 +138,9 @@ impl TriangleBlock {
             return Hits::NONE;
         }
         if mask != 0 {
-            mask &= error_of_sum(&q, &w).lt(sum.abs());
+            let (error, depth) = error_of_sum(&q, &w);
+            let begins = t.times(L::splat(BEGINS)).lt(depth.times(lanes.shear[2].abs()));
+            mask &= error.lt(sum.abs()) | !begins;
         }
         let mut hits = Hits::new(mask, t, w[1].times(inverse), w[2].times(inverse));
         if on_edge != 0 {

@@ -35,8 +35,6 @@ pub(crate) struct PixelSample<'f> {
     /// Number of the sample within the pixel and the iteration, or the series of them.
     pub index: u64,
     pub sampler: Sampler,
-    /// What it counts for by the filter.
-    pub weight: f32,
     filter: &'f FilterSampler,
     pixel: (u32, u32),
 }
@@ -57,13 +55,12 @@ impl<'f> PixelSample<'f> {
         let (x, y) = pixel;
         let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset.offset;
         let ray = world.camera().ray(position, u_lens);
-        let weight = offset.weight;
-        (Self { ray, key, index, sampler, weight, filter, pixel }, weight)
+        (Self { ray, key, index, sampler, filter, pixel }, offset.weight)
     }
 
-    /// Another of the same pixel, by numbers of its own, and its weight.
-    pub fn beside(&self, world: &World, index: u64) -> (Self, f32) {
-        Self::new(world, self.filter, self.key.with(BESIDE), self.pixel, index)
+    /// Another of the same pixel, by numbers of its own.
+    pub fn beside(&self, world: &World, index: u64) -> Self {
+        Self::new(world, self.filter, self.key.with(BESIDE), self.pixel, index).0
     }
 }
 

@@ -155,6 +155,7 @@ impl Estimator for Camera<'_> {
         let mut out = Components::default();
         if are_worth_it(world) {
             out.emitted = glance(world, sample, self.config.mapper.max_depth, probe);
+            probe.begin(None, Rgb::WHITE);
         }
         let lens = sample.ray;
         let mut walk = Walk {
