@@ -166,7 +166,8 @@ fn prepare(
         films::refuse_to_replace(path, &identity)?;
     }
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
-    Ok((file, Task { settings, plan, clamp: args.clamp, layers, identity, order, begun, visible }))
+    let (clamp, flags) = (args.clamp, args.photons.names());
+    Ok((file, Task { settings, flags, plan, clamp, layers, identity, order, begun, visible }))
 }
 
 /// The checkpoint could be written, and no file is to be written as two things. What is gone on with may have any name.

@@ -19,6 +19,7 @@ use crate::identity::{self, Identity};
 use crate::job::{Job, Order};
 use crate::layers::LayerPlan;
 use crate::load;
+use crate::method;
 use crate::noise;
 use crate::plan::Plan;
 use crate::preview::Previews;
@@ -29,6 +30,8 @@ use crate::quality;
 pub struct Task {
     /// How.
     pub settings: RenderSettings,
+    /// The flags of photon mapping that were given.
+    pub flags: Vec<String>,
     /// How much.
     pub plan: Plan,
     /// The most that a camera sample may bring.
@@ -161,13 +164,13 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let SceneFile { scene, origins, .. } = file;
     let world = load::world(scene, &origins)?;
     let preparing = clock.elapsed();
-    let Task { settings, plan, clamp, layers, identity, order, begun, visible } = task;
+    let Task { settings, flags, plan, clamp, layers, identity, order, begun, visible } = task;
     let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
     let session = session(&world, settings, &layers, begun, &plan, &watch)?.clamping(clamp);
-    if let Some(choice) = &session.plan().choice {
-        companions.messages.note(&format!("auto: {}", choice.reason()));
+    for note in about_choice(session.plan().choice.as_ref(), session.method(), &flags) {
+        companions.messages.note(&note);
     }
     let decided = *session.plan();
     let mut run = Run {
@@ -216,6 +219,17 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         preparing,
         threads: rayon::current_num_threads(),
     })
+}
+
+/// What was chosen and why, and which flags thereby have no effect.
+fn about_choice(choice: Option<&Choice>, method: &Method, flags: &[String]) -> Vec<String> {
+    let Some(choice) = choice else { return Vec::new() };
+    let mut notes = vec![format!("auto: {}", choice.reason())];
+    let foreign = method::foreign(flags, method);
+    if !foreign.is_empty() {
+        notes.push(format!("auto: {} makes no use of {}", method.name(), foreign.join(", ")));
+    }
+    notes
 }
 
 /// A session that begins at the plan's first sample, or goes on with what was begun.
@@ -403,4 +417,31 @@ impl Run<'_> {
 
 fn has_light(world: &World) -> bool {
     world.lights().any(|(_, power)| power.max_channel() > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nephroid::integrator::{PathConfig, Pick, PpmConfig, VcmConfig};
+
+    fn notes(pick: Pick, method: &Method, flags: &[&str]) -> Vec<String> {
+        let (asked_for, paths_are_known) = (false, true);
+        let choice = Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for, paths_are_known };
+        let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+        about_choice(Some(&choice), method, &flags)
+    }
+
+    #[test]
+    fn flags_that_the_choice_leaves_without_effect_are_named() {
+        let flags = ["--max-depth", "--direct-lights", "--photons", "--emit-max"];
+        let of = |pick, method| notes(pick, &method, &flags);
+        let path = of(Pick::Path, Method::Path(PathConfig { media: true, ..PathConfig::default() }));
+        assert_eq!(path[1..], ["auto: volpath makes no use of --photons, --emit-max"]);
+        let vcm = of(Pick::Vcm { connections: true }, Method::Vcm(VcmConfig::default()));
+        assert_eq!(vcm[1..], ["auto: vcm makes no use of --direct-lights, --photons"]);
+        assert_eq!(of(Pick::Ppm, Method::Ppm(PpmConfig::default())).len(), 1);
+        let known = notes(Pick::Path, &Method::Path(PathConfig::default()), &flags[..2]);
+        assert!(known.len() == 1 && known[0].starts_with("auto: paths from the camera"), "{known:?}");
+        assert!(about_choice(None, &Method::Path(PathConfig::default()), &[]).is_empty());
+    }
 }
