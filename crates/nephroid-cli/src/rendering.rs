@@ -169,7 +169,7 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
     let session = session(&world, settings, &layers, begun, &plan, &watch)?.clamping(clamp);
-    for note in about_choice(session.plan().choice.as_ref(), session.method(), &flags) {
+    for note in about_choice(session.plan().choice.as_ref(), session.method(), &flags, watch.interrupted()) {
         companions.messages.note(&note);
     }
     let decided = *session.plan();
@@ -221,9 +221,14 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     })
 }
 
-/// What was chosen and why, and which flags thereby have no effect.
-fn about_choice(choice: Option<&Choice>, method: &Method, flags: &[String]) -> Vec<String> {
-    let Some(choice) = choice else { return Vec::new() };
+/// What was chosen and why, and which flags thereby have no effect. Trials that were interrupted tell of nothing.
+fn about_choice(
+    choice: Option<&Choice>,
+    method: &Method,
+    flags: &[String],
+    interrupted: bool,
+) -> Vec<String> {
+    let Some(choice) = choice.filter(|_| !interrupted) else { return Vec::new() };
     let mut notes = vec![format!("auto: {}", choice.reason())];
     let foreign = method::foreign(flags, method);
     if !foreign.is_empty() {
@@ -424,11 +429,14 @@ mod tests {
     use super::*;
     use nephroid::integrator::{PathConfig, Pick, PpmConfig, VcmConfig};
 
-    fn notes(pick: Pick, method: &Method, flags: &[&str]) -> Vec<String> {
+    fn choice(pick: Pick) -> Choice {
         let (asked_for, paths_are_known) = (false, true);
-        let choice = Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for, paths_are_known };
+        Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for, paths_are_known }
+    }
+
+    fn notes(pick: Pick, method: &Method, flags: &[&str]) -> Vec<String> {
         let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
-        about_choice(Some(&choice), method, &flags)
+        about_choice(Some(&choice(pick)), method, &flags, false)
     }
 
     #[test]
@@ -442,6 +450,13 @@ mod tests {
         assert_eq!(of(Pick::Ppm, Method::Ppm(PpmConfig::default())).len(), 1);
         let known = notes(Pick::Path, &Method::Path(PathConfig::default()), &flags[..2]);
         assert!(known.len() == 1 && known[0].starts_with("auto: paths from the camera"), "{known:?}");
-        assert!(about_choice(None, &Method::Path(PathConfig::default()), &[]).is_empty());
+        assert!(about_choice(None, &Method::Path(PathConfig::default()), &[], false).is_empty());
+    }
+
+    #[test]
+    fn interrupted_trials_say_nothing() {
+        let (flags, method) = (["--photons".to_owned()], Method::Path(PathConfig::default()));
+        let notes = |interrupted| about_choice(Some(&choice(Pick::Path)), &method, &flags, interrupted).len();
+        assert_eq!((notes(false), notes(true)), (2, 0));
     }
 }
