@@ -38,6 +38,8 @@ pub struct Task {
     pub clamp: Option<f32>,
     /// The layers of the picture.
     pub layers: Vec<LayerPlan>,
+    /// Whether the error of each pixel is to be told.
+    pub wants_error: bool,
     /// What it is, as far as that is known beforehand.
     pub identity: Identity,
     /// What it was told to be, where a film is to be kept or written.
@@ -58,7 +60,7 @@ pub struct Rendered {
     convergence: Convergence,
     /// What the picture states of its error, by its whole steps.
     pub quality: Option<Quality>,
-    /// That of each pixel, if there is one.
+    /// That of each pixel, if it is wanted and there is one.
     pub error_image: Option<Vec<f32>>,
     /// Numbers of the samples of each pixel that are in them.
     pub covered: Range<u64>,
@@ -164,7 +166,7 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let SceneFile { scene, origins, .. } = file;
     let world = load::world(scene, &origins)?;
     let preparing = clock.elapsed();
-    let Task { settings, flags, plan, clamp, layers, identity, order, begun, visible } = task;
+    let Task { settings, flags, plan, clamp, layers, wants_error, identity, order, begun, visible } = task;
     let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
@@ -196,7 +198,7 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         noise: noise::noise(&picture.0),
         convergence: *run.session.convergence(),
         quality: run.session.quality(),
-        error_image: run.session.error_image(),
+        error_image: wants_error.then(|| run.session.error_image()).flatten(),
         whole: torn.then(|| (run.session.film().clone(), run.session.aovs().cloned())),
         picture,
         covered,
