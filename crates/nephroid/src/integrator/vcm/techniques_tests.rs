@@ -25,6 +25,7 @@ fn walk(surfaces: u32, far: bool) -> Walk {
     Walk {
         ray: Ray::new(Vec3::ZERO, Vec3::Z),
         inside: Surroundings::default(),
+        entered: false,
         throughput: Rgb::WHITE,
         depth: surfaces,
         scattered: surfaces,
