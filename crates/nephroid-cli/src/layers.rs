@@ -79,9 +79,9 @@ pub fn choose(
             continue;
         };
         if let Some(reason) = lacks(method, *aov) {
-            let name = aov.name();
+            let (name, integrator) = (aov.name(), method.name());
             return Err(Failure::Usage(format!(
-                "--aov {name}: the integrator {reason}, so it has no {name}"
+                "--aov {name}: the integrator {integrator} {reason}, so it has no {name}"
             )));
         }
         let plan = LayerPlan::of(*aov);
@@ -96,8 +96,9 @@ pub fn choose(
     for layer in of_scene {
         if let Some(reason) = lacks(method, layer.aov) {
             messages.warning(&format!(
-                "the layer \"{}\" of the scene is left out: the integrator {reason}",
-                layer.name
+                "the layer \"{}\" of the scene is left out: the integrator {} {reason}",
+                layer.name,
+                method.name()
             ));
         } else if !layers.iter().any(|other| other.name == layer.name) {
             layers.push(LayerPlan { name: layer.name.clone(), aov: layer.aov, channels: layer.channels() });
@@ -146,19 +147,16 @@ pub fn need_maps(layers: &[LayerPlan]) -> bool {
     })
 }
 
-/// Why an integrator has no such value, its name first.
+/// Why an integrator has no such value.
 fn lacks(method: &Method, aov: Aov) -> Option<&'static str> {
     match (method, aov) {
-        (Method::Vcm(_), aov) if aov.is_of_photons() => Some("vcm makes no estimates of so many photons"),
-        (Method::Vcm(_), Aov::Direct | Aov::Global | Aov::Caustic) => {
-            Some("vcm does not keep apart what its light paths bring")
+        (Method::Vcm(_), aov) if aov.is_of_photons() => Some("makes no estimates of so many photons"),
+        (Method::Path(_) | Method::LightTracer(_), aov) if aov.is_of_photons() => {
+            Some("makes no estimates from photons")
         }
-        (Method::Path(_), aov) if aov.is_of_photons() => Some("path makes no estimates from photons"),
-        (Method::LightTracer(_), aov) if aov.is_of_photons() => {
-            Some("ptracer makes no estimates from photons")
-        }
-        (Method::LightTracer(_), Aov::Direct | Aov::Global | Aov::Caustic | Aov::Medium) => {
-            Some("ptracer does not keep apart what its light paths bring")
+        (Method::Vcm(_), Aov::Direct | Aov::Global | Aov::Caustic)
+        | (Method::LightTracer(_), Aov::Direct | Aov::Global | Aov::Caustic | Aov::Medium) => {
+            Some("does not keep apart what its light paths bring")
         }
         _ => None,
     }

@@ -97,23 +97,25 @@ pub fn choose(
     let plan_neighbours = !draft.has("neighbours");
     let mut config = draft.finish();
     if chosen == Integrator::PTracer {
-        warn_of_foreign(flags, &["--max-depth"], "ptracer", messages);
-        return Ok(Method::LightTracer(LightTracerConfig { max_depth: config.max_depth }));
+        let method = Method::LightTracer(LightTracerConfig { max_depth: config.max_depth });
+        warn_of_foreign(flags, &method, messages);
+        return Ok(method);
     }
     if matches!(chosen, Integrator::Path | Integrator::VolPath) {
         let media = chosen == Integrator::VolPath;
-        let name = if media { "volpath" } else { "path" };
-        warn_of_foreign(flags, &["--max-depth", "--direct-lights"], name, messages);
+        let (max_depth, direct_lights) = (config.max_depth, config.direct_lights);
+        let method = Method::Path(PathConfig { max_depth, direct_lights, media });
+        warn_of_foreign(flags, &method, messages);
         if !media && file.scene.has_media() {
             messages.warning("the integrator path takes no notice of media; volpath is the one that does");
         }
-        let (max_depth, direct_lights) = (config.max_depth, config.direct_lights);
-        return Ok(Method::Path(PathConfig { max_depth, direct_lights, media }));
+        return Ok(method);
     }
     media_flags::settle(&mut config, file, flags, messages)?;
     if chosen == Integrator::Vcm {
-        warn_of_foreign(flags, &OF_VCM, "vcm", messages);
-        return Ok(Method::Vcm(VcmConfig { mapper: config, ..VcmConfig::default() }));
+        let method = Method::Vcm(VcmConfig { mapper: config, ..VcmConfig::default() });
+        warn_of_foreign(flags, &method, messages);
+        return Ok(method);
     }
     let ppm = |mapper| PpmConfig { mapper, plan_photons, plan_neighbours, samples_per_pixel: None };
     Ok(match chosen {
@@ -164,11 +166,22 @@ fn asks_for_maps(flags: &PhotonFlags) -> bool {
 /// Parameters that say how many photons to emit; a progressive render plans that where none is given.
 const PHOTON_COUNTS: [&str; 4] = ["photons", "caustic-photons", "emit", "volume-photons"];
 
+/// Of these flags of photon mapping those that an integrator does not know.
+pub fn foreign(flags: &[String], method: &Method) -> Vec<String> {
+    let known: &[&str] = match method {
+        Method::PhotonMapper(_) | Method::Ppm(_) | Method::Auto(_) => return Vec::new(),
+        Method::Vcm(_) => &OF_VCM,
+        Method::Path(_) => &["--max-depth", "--direct-lights"],
+        Method::LightTracer(_) => &["--max-depth"],
+    };
+    flags.iter().filter(|flag| !known.contains(&flag.as_str())).cloned().collect()
+}
+
 /// Warns of flags that an integrator does not know.
-fn warn_of_foreign(flags: &PhotonFlags, known: &[&str], name: &str, messages: &mut Messages) {
-    let foreign: Vec<String> =
-        flags.names().into_iter().filter(|flag| !known.contains(&flag.as_str())).collect();
+fn warn_of_foreign(flags: &PhotonFlags, method: &Method, messages: &mut Messages) {
+    let foreign = foreign(&flags.names(), method);
     if !foreign.is_empty() {
+        let name = method.name();
         messages.warning(&format!("{} mean nothing to the integrator {name}", foreign.join(", ")));
     }
 }

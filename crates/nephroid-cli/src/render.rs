@@ -166,7 +166,9 @@ fn prepare(
         films::refuse_to_replace(path, &identity)?;
     }
     let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
-    Ok((file, Task { settings, plan, clamp: args.clamp, layers, identity, order, begun, visible }))
+    let (clamp, flags) = (args.clamp, args.photons.names());
+    let wants_error = args.aovs.contains(&LayerFlag::Error);
+    Ok((file, Task { settings, flags, plan, clamp, layers, wants_error, identity, order, begun, visible }))
 }
 
 /// The checkpoint could be written, and no file is to be written as two things. What is gone on with may have any name.
@@ -240,7 +242,7 @@ fn write(
     outputs.retain(|output| output.kind != Kind::Film || rendered.has_film());
     let (film, further) = &rendered.picture;
     let layers = layers::develop(&rendered.layers, further.as_ref());
-    let error = rendered.error_image.clone().filter(|_| args.aovs.contains(&LayerFlag::Error));
+    let error = rendered.error_image.clone();
     let mut picture = Picture { image: film.develop(), noisy: None, error, layers };
     let (denoised, trouble) = denoise::try_to(denoiser, &mut picture);
     let (outputs, more) =

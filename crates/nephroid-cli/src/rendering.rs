@@ -19,6 +19,7 @@ use crate::identity::{self, Identity};
 use crate::job::{Job, Order};
 use crate::layers::LayerPlan;
 use crate::load;
+use crate::method;
 use crate::noise;
 use crate::plan::Plan;
 use crate::preview::Previews;
@@ -29,12 +30,16 @@ use crate::quality;
 pub struct Task {
     /// How.
     pub settings: RenderSettings,
+    /// The flags of photon mapping that were given.
+    pub flags: Vec<String>,
     /// How much.
     pub plan: Plan,
     /// The most that a camera sample may bring.
     pub clamp: Option<f32>,
     /// The layers of the picture.
     pub layers: Vec<LayerPlan>,
+    /// Whether the error of each pixel is to be told.
+    pub wants_error: bool,
     /// What it is, as far as that is known beforehand.
     pub identity: Identity,
     /// What it was told to be, where a film is to be kept or written.
@@ -55,7 +60,7 @@ pub struct Rendered {
     convergence: Convergence,
     /// What the picture states of its error, by its whole steps.
     pub quality: Option<Quality>,
-    /// That of each pixel, if there is one.
+    /// That of each pixel, if it is wanted and there is one.
     pub error_image: Option<Vec<f32>>,
     /// Numbers of the samples of each pixel that are in them.
     pub covered: Range<u64>,
@@ -161,13 +166,13 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
     let SceneFile { scene, origins, .. } = file;
     let world = load::world(scene, &origins)?;
     let preparing = clock.elapsed();
-    let Task { settings, plan, clamp, layers, identity, order, begun, visible } = task;
+    let Task { settings, flags, plan, clamp, layers, wants_error, identity, order, begun, visible } = task;
     let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);
     let limit = plan.seconds.map(|seconds| (seconds - spent).max(0.0));
     let watch = Watch::new(visible, limit, progress::listen()?);
     let session = session(&world, settings, &layers, begun, &plan, &watch)?.clamping(clamp);
-    if let Some(choice) = &session.plan().choice {
-        companions.messages.note(&format!("auto: {}", choice.reason()));
+    for note in about_choice(session.plan().choice.as_ref(), session.method(), &flags, watch.interrupted()) {
+        companions.messages.note(&note);
     }
     let decided = *session.plan();
     let mut run = Run {
@@ -193,7 +198,7 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         noise: noise::noise(&picture.0),
         convergence: *run.session.convergence(),
         quality: run.session.quality(),
-        error_image: run.session.error_image(),
+        error_image: wants_error.then(|| run.session.error_image()).flatten(),
         whole: torn.then(|| (run.session.film().clone(), run.session.aovs().cloned())),
         picture,
         covered,
@@ -216,6 +221,22 @@ pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result
         preparing,
         threads: rayon::current_num_threads(),
     })
+}
+
+/// What was chosen and why, and which flags thereby have no effect. Trials that were interrupted tell of nothing.
+fn about_choice(
+    choice: Option<&Choice>,
+    method: &Method,
+    flags: &[String],
+    interrupted: bool,
+) -> Vec<String> {
+    let Some(choice) = choice.filter(|_| !interrupted) else { return Vec::new() };
+    let mut notes = vec![format!("auto: {}", choice.reason())];
+    let foreign = method::foreign(flags, method);
+    if !foreign.is_empty() {
+        notes.push(format!("auto: {} makes no use of {}", method.name(), foreign.join(", ")));
+    }
+    notes
 }
 
 /// A session that begins at the plan's first sample, or goes on with what was begun.
@@ -403,4 +424,41 @@ impl Run<'_> {
 
 fn has_light(world: &World) -> bool {
     world.lights().any(|(_, power)| power.max_channel() > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nephroid::integrator::{PathConfig, Pick, PpmConfig, VcmConfig};
+
+    fn choice(pick: Pick) -> Choice {
+        let (asked_for, paths_are_known) = (false, true);
+        Choice { pick, path: 1.0, ppm: 1.0, vcm: [1.0; 2], asked_for, paths_are_known }
+    }
+
+    fn notes(pick: Pick, method: &Method, flags: &[&str]) -> Vec<String> {
+        let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+        about_choice(Some(&choice(pick)), method, &flags, false)
+    }
+
+    #[test]
+    fn flags_that_the_choice_leaves_without_effect_are_named() {
+        let flags = ["--max-depth", "--direct-lights", "--photons", "--emit-max"];
+        let of = |pick, method| notes(pick, &method, &flags);
+        let path = of(Pick::Path, Method::Path(PathConfig { media: true, ..PathConfig::default() }));
+        assert_eq!(path[1..], ["auto: volpath makes no use of --photons, --emit-max"]);
+        let vcm = of(Pick::Vcm { connections: true }, Method::Vcm(VcmConfig::default()));
+        assert_eq!(vcm[1..], ["auto: vcm makes no use of --direct-lights, --photons"]);
+        assert_eq!(of(Pick::Ppm, Method::Ppm(PpmConfig::default())).len(), 1);
+        let known = notes(Pick::Path, &Method::Path(PathConfig::default()), &flags[..2]);
+        assert!(known.len() == 1 && known[0].starts_with("auto: paths from the camera"), "{known:?}");
+        assert!(about_choice(None, &Method::Path(PathConfig::default()), &[], false).is_empty());
+    }
+
+    #[test]
+    fn interrupted_trials_say_nothing() {
+        let (flags, method) = (["--photons".to_owned()], Method::Path(PathConfig::default()));
+        let notes = |interrupted| about_choice(Some(&choice(Pick::Path)), &method, &flags, interrupted).len();
+        assert_eq!((notes(false), notes(true)), (2, 0));
+    }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use nephroid::integrator::Method;
 use nephroid::session::{MapStatistics, RenderSettings};
 use nephroid::transport::{Balance, MapPlan, VolumeKind};
 use serde_json::{Value, json};
@@ -14,7 +15,7 @@ use crate::films;
 use crate::layers::{ERROR, LayerPlan};
 use crate::method;
 use crate::noise;
-use crate::numbers::{grouped, plural, power};
+use crate::numbers::{grouped, plural, power, three_digits};
 use crate::output::{Kind, Output};
 use crate::plan::Plan;
 use crate::plan_json;
@@ -79,7 +80,41 @@ impl Map {
     }
 }
 
+/// The light paths of all passes that camera paths are connected to and merged with.
+struct LightPaths {
+    numbers: MapStatistics,
+    /// Of the first pass, in m; 0 where nothing is merged.
+    merging_radius: f32,
+}
+
+impl LightPaths {
+    fn text(&self) -> String {
+        let (paths, merged) = (grouped(self.numbers.paths), grouped(self.numbers.photons));
+        let radius = match self.merging_radius {
+            radius if radius > 0.0 => format!(", radius {} m in the first pass", three_digits(radius.into())),
+            _ => String::new(),
+        };
+        format!("{:>18}: {paths} with {merged} vertices to merge with{radius}", "light paths")
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "emitted": self.numbers.paths,
+            "vertices": self.numbers.photons,
+            "bytes": self.numbers.bytes,
+            "merging_radius": self.merging_radius,
+        })
+    }
+}
+
 impl Report<'_> {
+    /// What there is instead of maps of photons on surfaces, if that is so.
+    fn light_paths(&self) -> Option<LightPaths> {
+        let s = &self.rendered.statistics;
+        matches!(self.rendered.method, Method::Vcm(_))
+            .then(|| LightPaths { numbers: s.global, merging_radius: s.plan.camera.merging_radius })
+    }
+
     fn maps(&self) -> Vec<Map> {
         let Some(config) = self.rendered.method.mapper() else { return Vec::new() };
         let s = &self.rendered.statistics;
@@ -88,22 +123,25 @@ impl Report<'_> {
         let planned = self.rendered.method.is_progressive();
         let wanted = |asked: u64, plan: MapPlan| if planned { plan.expected_photons } else { asked };
         let what = "photons";
-        let mut maps = vec![
-            Map {
-                name: "global",
-                what,
-                wanted: wanted(config.photons, plan.global),
-                plan: plan.global,
-                numbers: s.global,
-            },
-            Map {
-                name: "caustic",
-                what,
-                wanted: wanted(config.caustic_photons, plan.caustic),
-                plan: plan.caustic,
-                numbers: s.caustic,
-            },
-        ];
+        let mut maps = Vec::new();
+        if self.light_paths().is_none() {
+            maps.extend([
+                Map {
+                    name: "global",
+                    what,
+                    wanted: wanted(config.photons, plan.global),
+                    plan: plan.global,
+                    numbers: s.global,
+                },
+                Map {
+                    name: "caustic",
+                    what,
+                    wanted: wanted(config.caustic_photons, plan.caustic),
+                    plan: plan.caustic,
+                    numbers: s.caustic,
+                },
+            ]);
+        }
         if plan.volume.paths + plan.volume_caustic.paths > 0 {
             let asked = config.volume_photons();
             let what = if config.volume_kind == VolumeKind::Beams { "beams" } else { what };
@@ -251,6 +289,9 @@ impl Report<'_> {
             let part = films::passes(std::slice::from_ref(&r.covered), r.samples_per_pass());
             let _ = writeln!(out, "the picture has {part}; of this run: {} samples", s.samples_per_pixel);
         }
+        if let Some(light_paths) = self.light_paths() {
+            let _ = writeln!(out, "{}", light_paths.text());
+        }
         for map in self.maps() {
             let bytes = map.bytes_per_photon().map_or(String::new(), |b| format!(", {b:.0} bytes each"));
             let _ = writeln!(
@@ -390,6 +431,7 @@ impl Report<'_> {
             "camera_samples": s.picture.samples,
             "seconds": seconds,
             "photons": maps,
+            "light_paths": self.light_paths().map(|paths| paths.json()),
             "ledger": self.balances().map(balance_json).collect::<Vec<_>>(),
             "image": {
                 "mean": image.mean().to_array(),

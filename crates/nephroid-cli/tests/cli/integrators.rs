@@ -79,6 +79,23 @@ fn light_tracing_is_asked_for_by_its_name() {
 }
 
 #[test]
+fn paths_from_both_ends_have_no_maps_but_light_paths() {
+    let dir = dir_with(OURS);
+    let vcm = ["render", "a.xml", "--integrator", "vcm", "--passes", "2"];
+    let run = dir.run(&vcm).ends_with(0);
+    run.says("light paths: 40,000 with ").says(" vertices to merge with, radius ").does_not_say(" map: ");
+    let object = dir.run(&[&vcm[..], &["--json"]].concat()).ends_with(0).json();
+    let paths = &object["light_paths"];
+    assert_eq!((&paths["emitted"], &object["photons"]), (&40_000.into(), &serde_json::json!({})));
+    assert!(
+        paths["vertices"].as_u64() > Some(1000) && paths["merging_radius"].as_f64() > Some(0.0),
+        "{paths}"
+    );
+    let mapped = dir.run(&["render", "a.xml", "--json"]).ends_with(0).json();
+    assert!(mapped["light_paths"].is_null() && mapped["photons"]["global"].is_object());
+}
+
+#[test]
 fn a_clamp_tells_what_it_takes() {
     let dir = dir_with(OURS);
     let whole = dir.run(&["render", "a.xml"]).ends_with(0).does_not_say("clamped");

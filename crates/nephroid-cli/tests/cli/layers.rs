@@ -101,10 +101,14 @@ fn layers_that_cannot_be_are_refused() {
         &["-o", "x.png", "--aov", "albedo"],
         "error: --aov: layers are written to OpenEXR and film files only; name one with -o FILE.exr\n",
     );
-    refused(
-        &["-o", "x.exr", "--integrator", "path", "--aov", "depth,radius"],
-        "error: --aov radius: the integrator path makes no estimates from photons, so it has no radius\n",
-    );
+    for integrator in ["path", "volpath"] {
+        refused(
+            &["-o", "x.exr", "--integrator", integrator, "--aov", "depth,radius"],
+            &format!(
+                "error: --aov radius: the integrator {integrator} makes no estimates from photons, so it has no radius\n"
+            ),
+        );
+    }
     refused(
         &["-o", "x.exr", "--integrator", "ptracer", "--aov", "depth,caustic"],
         "error: --aov caustic: the integrator ptracer does not keep apart what its light paths bring, so it has no \
@@ -150,6 +154,10 @@ fn layers_of_a_scene_are_checked_where_they_stand() {
     run.says("a.xml:2").says("\"shape_index\" is not kept here: the layer is left out");
     assert!(channels(&left_out, "x.exr").contains_key("d.T"));
     let radius = with_aovs("r:radius,d:depth");
-    let run = radius.run(&["render", "a.xml", "-o", "x.exr", "--integrator", "path"]).ends_with(0);
-    run.says("warning: the layer \"r\" of the scene is left out: the integrator path makes no estimates from photons");
+    for name in ["path", "volpath"] {
+        let run = radius.run(&["render", "a.xml", "-o", "x.exr", "--integrator", name]).ends_with(0);
+        run.says(&format!(
+            "warning: the layer \"r\" of the scene is left out: the integrator {name} makes no estimates from photons"
+        ));
+    }
 }

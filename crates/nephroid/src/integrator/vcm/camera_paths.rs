@@ -11,13 +11,13 @@ use crate::color::Rgb;
 use crate::integrator::glances::{are_worth_it, glance};
 use crate::integrator::photon_mapper::PhotonMapper;
 use crate::integrator::{Components, Estimator, LightPart, Met, Probe};
-use crate::material::{Transport, segments_by};
-use crate::math::Ray;
+use crate::material::{Bsdf, Transport, segments_by};
+use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Passage, PhaseSample};
 use crate::photon_map::NearestList;
-use crate::sampling::Key;
+use crate::sampling::{Key, Sampler};
 use crate::transport::{Lit, PixelSample, Scatterer, effort, survival};
-use crate::world::{Surroundings, World, leave};
+use crate::world::{Hit, Surroundings, World, leave};
 
 /// What the camera pass of one iteration connects and merges with.
 pub(crate) struct Camera<'a> {
@@ -34,6 +34,8 @@ pub(crate) struct Camera<'a> {
 pub(super) struct Walk {
     pub ray: Ray,
     pub inside: Surroundings,
+    /// Whether the medium there began at the last surface.
+    pub entered: bool,
     pub throughput: Rgb,
     /// Segments up to the next surface or collision.
     pub depth: u32,
@@ -52,6 +54,34 @@ pub(super) struct Walk {
 }
 
 impl Walk {
+    /// Begins at the lens.
+    fn begin(world: &World, sample: &PixelSample) -> Self {
+        let lens = sample.ray;
+        let mut walk = Self {
+            ray: lens,
+            inside: world.camera_surroundings(),
+            entered: false,
+            throughput: Rgb::WHITE,
+            depth: 1,
+            scattered: 0,
+            collisions: 0,
+            specular: false,
+            trail: Trail::new(),
+            length: 0.0,
+            at_first: 0.0,
+            partner: partner(sample.key, sample.index),
+        };
+        walk.trail.begin(Place::Point { position: lens.origin }, 0.0);
+        walk
+    }
+
+    /// Leaves a surface in a direction.
+    fn leave(&mut self, world: &World, hit: &Hit, wi: Vec3) {
+        let inside = world.cross(self.inside, hit, self.ray.direction, wi);
+        self.entered = inside.medium() != self.inside.medium();
+        (self.inside, self.ray) = (inside, leave(&hit.point, wi));
+    }
+
     /// What light is that comes straight, or by specular surfaces, to where the path was last.
     pub(super) fn part(&self) -> LightPart {
         match self.scattered {
@@ -79,6 +109,38 @@ impl Camera<'_> {
             let across = self.world.camera().pixels_per_area_from(lens.origin, position);
             first.arrival = across * ng.dot(walk.ray.direction).abs();
         }
+    }
+
+    /// What the medium does, if there is one, that the path is in up to what it meets next.
+    fn to_next<P: Probe>(
+        &self,
+        walk: &mut Walk,
+        hit: Option<&Hit>,
+        sample: &mut PixelSample,
+        neighbors: &mut NearestList,
+        out: &mut Components,
+        probe: &mut P,
+    ) -> AfterMedium {
+        let world = self.world;
+        let Some(matter) = world.matter(walk.inside) else { return AfterMedium::Surface };
+        let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+        if walk.scattered > 0 {
+            return self.through_medium(walk, matter, end, sample, out, probe);
+        }
+        let open = [walk.entered, hit.is_some_and(|hit| world.ends_medium(hit))];
+        let (seen, through) = self.media.medium_ahead(
+            &walk.ray,
+            end,
+            walk.inside,
+            walk.depth,
+            open,
+            &mut sample.sampler,
+            neighbors,
+            probe,
+        );
+        out.medium += walk.throughput * seen;
+        walk.throughput *= through;
+        if walk.throughput.is_black() { AfterMedium::End } else { AfterMedium::Surface }
     }
 
     /// What a medium does to a path that has met a surface: a vertex in it, or none. Tells whether the path goes on.
@@ -129,6 +191,64 @@ impl Camera<'_> {
             }
         }
     }
+
+    /// Leaves the scene.
+    fn meet_sky(&self, walk: &mut Walk, out: &mut Components, probe: &mut impl Probe) {
+        let (world, direction) = (self.world, walk.ray.direction);
+        for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
+            let radiance = emitter.sky_radiance(&world.scene().textures, direction);
+            let lamp = |from| LampEnd::in_sky(world, light, direction, radiance, from);
+            self.meet(walk, radiance, lamp, out, probe);
+        }
+    }
+
+    /// What a surface that is not specular scatters towards the camera.
+    fn scatter<P: Probe>(
+        &self,
+        (hit, bsdf): (&Hit, &Bsdf),
+        walk: &mut Walk,
+        sample: &mut PixelSample,
+        neighbors: &mut NearestList,
+        out: &mut Components,
+        probe: &mut P,
+    ) {
+        if walk.scattered == 0 {
+            walk.at_first = self.at_first.radius(self.world, hit.point.position, walk.length, neighbors);
+        }
+        (walk.scattered, walk.specular) = (walk.scattered + 1, false);
+        let wo = -walk.ray.direction;
+        let lit = Lit { scatterer: Scatterer::Surface { hit, bsdf }, wo, inside: walk.inside };
+        if self.fits(walk.depth + 1) {
+            let direct = walk.throughput * self.direct(&lit, walk, sample, probe);
+            book(out, walk.part(), direct, probe);
+            let connected = walk.throughput * self.connected(&lit, walk, sample, probe);
+            book(out, LightPart::Global, connected, probe);
+            self.merged(hit, bsdf, walk, out, probe);
+        }
+    }
+
+    /// Takes a way on from a surface; false if the path ends there.
+    fn go_on(&self, hit: &Hit, bsdf: &Bsdf, walk: &mut Walk, s: &mut Sampler) -> bool {
+        let wo = -walk.ray.direction;
+        let (u, u_lobe, u_survive) = (s.next_2d(), s.next_1d(), s.next_1d());
+        let Some(next) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { return false };
+        let carried = walk.throughput * next.weight;
+        let effort = effort(walk.depth - 1, walk.collisions);
+        let q = survival(walk.throughput, carried / next.radiance_scale, effort);
+        if u_survive >= q {
+            return false;
+        }
+        walk.throughput = carried / q;
+        if next.dirac {
+            walk.specular = true;
+            walk.trail.turn(1.0, 1.0);
+        } else {
+            walk.trail.turn(next.pdf_solid_angle, bsdf.pdf(next.wi, wo));
+        }
+        walk.leave(self.world, hit, next.wi);
+        walk.depth += segments_by(wo, next.wi);
+        true
+    }
 }
 
 /// Where a path is behind a stretch of a medium.
@@ -158,57 +278,16 @@ impl Estimator for Camera<'_> {
             probe.begin(None, Rgb::WHITE);
         }
         let lens = sample.ray;
-        let mut walk = Walk {
-            ray: lens,
-            inside: world.camera_surroundings(),
-            throughput: Rgb::WHITE,
-            depth: 1,
-            scattered: 0,
-            collisions: 0,
-            specular: false,
-            trail: Trail::new(),
-            length: 0.0,
-            at_first: 0.0,
-            partner: partner(sample.key, sample.index),
-        };
-        walk.trail.begin(Place::Point { position: lens.origin }, 0.0);
-        let mut entered = false;
+        let mut walk = Walk::begin(world, sample);
         while self.fits(walk.depth) {
             let hit = world.intersect(&walk.ray);
-            if let Some(matter) = world.matter(walk.inside) {
-                let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-                if walk.scattered == 0 {
-                    let open = [entered, hit.is_some_and(|hit| world.ends_medium(&hit))];
-                    let (seen, through) = self.media.medium_ahead(
-                        &walk.ray,
-                        end,
-                        walk.inside,
-                        walk.depth,
-                        open,
-                        &mut sample.sampler,
-                        neighbors,
-                        probe,
-                    );
-                    out.medium += walk.throughput * seen;
-                    walk.throughput *= through;
-                    if walk.throughput.is_black() {
-                        break;
-                    }
-                } else {
-                    match self.through_medium(&mut walk, matter, end, sample, &mut out, probe) {
-                        AfterMedium::Surface => {}
-                        AfterMedium::Collision => continue,
-                        AfterMedium::End => break,
-                    }
-                }
+            match self.to_next(&mut walk, hit.as_ref(), sample, neighbors, &mut out, probe) {
+                AfterMedium::Surface => {}
+                AfterMedium::Collision => continue,
+                AfterMedium::End => break,
             }
             let Some(hit) = hit else {
-                let direction = walk.ray.direction;
-                for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
-                    let radiance = emitter.sky_radiance(&world.scene().textures, direction);
-                    let lamp = |from| LampEnd::in_sky(world, light, direction, radiance, from);
-                    self.meet(&mut walk, radiance, lamp, &mut out, probe);
-                }
+                self.meet_sky(&mut walk, &mut out, probe);
                 break;
             };
             let wo = -walk.ray.direction;
@@ -220,55 +299,20 @@ impl Estimator for Camera<'_> {
             let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
             if bsdf.is_null() {
                 let direction = walk.ray.direction;
-                let inside = world.cross(walk.inside, &hit, direction, direction);
-                entered = inside.medium() != walk.inside.medium();
-                (walk.inside, walk.ray) = (inside, leave(&hit.point, direction));
+                walk.leave(world, &hit, direction);
                 continue;
             }
             let (throughput, depth, first) = (walk.throughput, walk.depth, walk.scattered == 0);
             probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first });
             let place = Place::Surface { position: hit.point.position, ng: hit.point.ng };
-            self.arrive(
-                &mut walk,
-                place,
-                if bsdf.is_dirac() { Kind::Specular } else { Kind::Surface },
-                &lens,
-            );
+            let kind = if bsdf.is_dirac() { Kind::Specular } else { Kind::Surface };
+            self.arrive(&mut walk, place, kind, &lens);
             if !bsdf.is_dirac() {
-                if walk.scattered == 0 {
-                    walk.at_first = self.at_first.radius(world, hit.point.position, walk.length, neighbors);
-                }
-                (walk.scattered, walk.specular) = (walk.scattered + 1, false);
-                let lit =
-                    Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walk.inside };
-                if self.fits(walk.depth + 1) {
-                    let direct = throughput * self.direct(&lit, &mut walk, sample, probe);
-                    book(&mut out, walk.part(), direct, probe);
-                    let connected = throughput * self.connected(&lit, &mut walk, sample, probe);
-                    book(&mut out, LightPart::Global, connected, probe);
-                    self.merged(&hit, &bsdf, &mut walk, &mut out, probe);
-                }
+                self.scatter((&hit, &bsdf), &mut walk, sample, neighbors, &mut out, probe);
             }
-            let s = &mut sample.sampler;
-            let (u, u_lobe, u_survive) = (s.next_2d(), s.next_1d(), s.next_1d());
-            let Some(next) = bsdf.sample(wo, u, u_lobe, Transport::Radiance) else { break };
-            let carried = throughput * next.weight;
-            let q =
-                survival(throughput, carried / next.radiance_scale, effort(walk.depth - 1, walk.collisions));
-            if u_survive >= q {
+            if !self.go_on(&hit, &bsdf, &mut walk, &mut sample.sampler) {
                 break;
             }
-            walk.throughput = carried / q;
-            if next.dirac {
-                walk.specular = true;
-                walk.trail.turn(1.0, 1.0);
-            } else {
-                walk.trail.turn(next.pdf_solid_angle, bsdf.pdf(next.wi, wo));
-            }
-            let inside = world.cross(walk.inside, &hit, walk.ray.direction, next.wi);
-            entered = inside.medium() != walk.inside.medium();
-            (walk.inside, walk.ray) = (inside, leave(&hit.point, next.wi));
-            walk.depth += segments_by(wo, next.wi);
         }
         out
     }

@@ -21,6 +21,8 @@ mod reach;
 mod reach_tests;
 mod shares;
 mod techniques;
+#[cfg(test)]
+mod techniques_tests;
 mod trial;
 mod weights;
 #[cfg(test)]

@@ -35,6 +35,16 @@ impl Reach {
         2.0 * self.radius
     }
 
+    /// The radius at the first surface that the camera sees and is not specular, or at one behind it, `far` from the vertex
+    /// before or not; 0 where nothing is merged.
+    pub fn radius_at(&self, is_first: bool, at_first: f32, far: bool) -> f32 {
+        match (is_first, far) {
+            (true, _) => at_first,
+            (false, true) => self.radius,
+            (false, false) => 0.0,
+        }
+    }
+
     /// η at vertex `m` of a path, of which `first` is the one that the camera sees first and is not specular, with the
     /// radius `at_first` there; 0 where nothing is merged. Light that came straight from a lamp is not: lamps are asked
     /// for it.
@@ -42,11 +52,7 @@ impl Reach {
         if m < 2 || kind != Kind::Surface {
             return 0.0;
         }
-        let radius = match m {
-            _ if m == first => at_first,
-            _ if far => self.radius,
-            _ => return 0.0,
-        };
+        let radius = self.radius_at(m == first, at_first, far);
         f64::from(self.area(radius))
     }
 }

@@ -2,9 +2,10 @@
 //! merged with photons.
 
 use super::camera_paths::{Camera, Walk, book};
-use super::densities::{Place, Trail};
+use super::densities::{Node, Place, Trail};
 use super::lamp::LampEnd;
 use super::light_vertex::LightVertex;
+use super::reach::Reach;
 use super::weights::{MOST_CONNECTED, Technique, Weighed, Whole};
 use crate::color::Rgb;
 use crate::integrator::glances::are_worth_it;
@@ -171,17 +172,14 @@ impl Camera<'_> {
         probe: &mut impl Probe,
     ) {
         let reach = &self.techniques.reach;
-        let behind = walk.scattered > 1;
-        let radius = if behind { reach.radius } else { walk.at_first };
+        let radius = walk.merging_radius(reach);
         let area = reach.area(radius);
-        let far = walk.trail.nodes.last().is_some_and(|node| node.far);
-        if area <= 0.0 || bsdf.is_black() || (behind && !far) {
+        if area <= 0.0 || bsdf.is_black() {
             return;
         }
         let (wo, position) = (-walk.ray.direction, hit.point.position);
         let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
         let (at_first, scale) = (walk.at_first, walk.throughput / area);
-        let Some((last, before)) = walk.trail.nodes.split_last_mut() else { return };
         let [mut caustic, mut global, mut of_half] = [Rgb::BLACK; 3];
         self.paths.each_within(position, radius, |photon, place| {
             let height = (place - position).dot(normal);
@@ -195,12 +193,11 @@ impl Camera<'_> {
             if f.is_black() {
                 return;
             }
-            if let Some(before) = before.last_mut() {
-                before.counter = bsdf.pdf(photon.wi, wo) * walk.trail.back;
-            }
-            let counters = [last.arrival, bsdf.pdf(wo, photon.wi) * photon.back];
-            let path =
-                Whole { light: self.paths.nodes_at(photon), counters, camera: before, far: true, at_first };
+            let Some((arrival, camera)) = up_to_photon(&mut walk.trail, bsdf.pdf(photon.wi, wo)) else {
+                return;
+            };
+            let counters = [arrival, bsdf.pdf(wo, photon.wi) * photon.back];
+            let path = Whole { light: self.paths.nodes_at(photon), counters, camera, far: true, at_first };
             let Weighed { weight, over_paths } = self.techniques.weigh(&path, Technique::Merged);
             let light = f * photon.power * weight;
             probe.technique(Found::Merged, scale * light, over_paths);
@@ -214,6 +211,25 @@ impl Camera<'_> {
             book(out, part, scale * light, probe);
         }
     }
+}
+
+impl Walk {
+    /// The radius within which photons are merged at the surface where the path is; 0 where none are.
+    pub(super) fn merging_radius(&self, reach: &Reach) -> f32 {
+        let far = self.trail.nodes.last().is_some_and(|node| node.far);
+        reach.radius_at(self.scattered <= 1, self.at_first, far)
+    }
+}
+
+/// The density with which a walk comes to its last vertex, which a photon takes the place of, and the vertices before. To
+/// the last of these the light path goes on with this density per steradian.
+pub(super) fn up_to_photon(trail: &mut Trail, onward: f32) -> Option<(f32, &[Node])> {
+    let back = trail.back;
+    let (last, before) = trail.nodes.split_last_mut()?;
+    if let Some(before) = before.last_mut() {
+        before.counter = onward * back;
+    }
+    Some((last.arrival, before))
 }
 
 /// Sets the densities of a light path that comes to the last vertex, and from there to the one before.
