@@ -8,7 +8,7 @@ use super::light_vertex::place_of;
 use super::reach::AtFirst;
 use super::weights::Techniques;
 use crate::color::Rgb;
-use crate::integrator::glances::{are_worth_it, glance};
+use crate::integrator::glances::glance;
 use crate::integrator::photon_mapper::PhotonMapper;
 use crate::integrator::{Components, Estimator, LightPart, Met, Probe};
 use crate::material::{Bsdf, Transport, segments_by};
@@ -28,6 +28,8 @@ pub(crate) struct Camera<'a> {
     pub(super) at_first: AtFirst<'a>,
     /// Reads the maps of light in media.
     pub media: PhotonMapper<'a>,
+    /// Whether lamps that are seen are looked for by rays of their own.
+    pub glances: bool,
 }
 
 /// A path on its way.
@@ -273,7 +275,7 @@ impl Estimator for Camera<'_> {
         probe.begin(None, Rgb::WHITE);
         let world = self.world;
         let mut out = Components::default();
-        if are_worth_it(world) {
+        if self.glances {
             out.emitted = glance(world, sample, self.config.mapper.max_depth, probe);
             probe.begin(None, Rgb::WHITE);
         }

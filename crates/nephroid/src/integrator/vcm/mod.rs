@@ -28,6 +28,7 @@ mod weights;
 #[cfg(test)]
 mod weights_tests;
 
+use crate::integrator::glances::are_worth_it;
 pub(crate) use camera_paths::Camera;
 pub use config::VcmConfig;
 pub(crate) use grid::Grid;
@@ -121,7 +122,8 @@ impl Iteration {
         let plan = CameraPlan { stride: 1, gather_rays: None, ..*plan };
         let media = PhotonMapper::new(world, &self.in_media, &self.maps, &self.guides, &plan);
         let Self { paths, techniques, .. } = self;
-        Camera { world, config, paths, techniques: *techniques, at_first, media }
+        let glances = are_worth_it(world);
+        Camera { world, config, paths, techniques: *techniques, at_first, media, glances }
     }
 
     /// What its light paths bring to the camera, one by one.

@@ -8,7 +8,6 @@ use super::light_vertex::LightVertex;
 use super::reach::Reach;
 use super::weights::{MOST_CONNECTED, Technique, Weighed, Whole};
 use crate::color::Rgb;
-use crate::integrator::glances::are_worth_it;
 use crate::integrator::{Components, Found, LightPart, Probe};
 use crate::light::Source;
 use crate::material::Bsdf;
@@ -48,7 +47,7 @@ impl Camera<'_> {
         out: &mut Components,
         probe: &mut impl Probe,
     ) {
-        if walk.scattered == 0 && are_worth_it(self.world) {
+        if walk.scattered == 0 && self.glances {
             // Glances bring it.
             probe.technique(Found::Met, walk.throughput * radiance, 1.0);
             return;
