@@ -227,14 +227,14 @@ fn built_in_scenes() {
         ("report-2-6", &path(), &[0.1, 0.05, 0.03]),
         ("room", &ppm, &[0.05, 0.03]),
         ("room", &auto, &[0.05, 0.03]),
+        ("room", &vcm, &[0.05, 0.03]),
         ("cornell", &ppm, &[0.03, 0.02]),
-        ("cornell", &vcm, &[0.05]),
         ("cornell", &auto, &[0.03]),
         ("balls-area", &ppm, &[0.1, 0.05]),
-        ("nephroid", &vcm, &[0.05]),
-        ("keyhole", &ppm, &[0.1, 0.05]),
-        ("shell", &ppm, &[0.05, 0.03]),
-        ("pool", &ppm, &[0.1, 0.05]),
+        ("balls-point", &ppm, &[0.05, 0.03]),
+        ("nephroid", &ppm, &[0.035]),
+        ("shell", &ppm, &[0.05, 0.035]),
+        ("pool", &ppm, &[0.05, 0.03]),
     ];
     let failed: Vec<String> = cases
         .into_iter()
