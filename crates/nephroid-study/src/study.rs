@@ -141,12 +141,14 @@ impl Study {
 
     /// Every number, with its band and whether it lies in it.
     pub fn json(&self) -> Value {
+        // An end that no value can pass is none.
+        let end = |end: f64| if end == f64::MAX { Value::Null } else { json!(end) };
         let number = |number: &crate::body::Number| {
             json!({
                 "name": number.name,
                 "value": number.value,
                 "unit": number.unit,
-                "band": number.band,
+                "band": number.band.map(|band| band.map(end)),
                 "holds": number.holds(),
             })
         };

@@ -107,8 +107,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     );
     body.finding(
         "Figs 3.1 to 3.5",
-        "The equations of transfer and their drawings are the usual ones.",
-        "Nothing was to be run.",
+        "Diagrams and the equations of transfer: the usual ones.",
+        "Nothing: there is nothing to render.",
         "They are theory; the sections on media rest on them.",
     );
     Ok(body)

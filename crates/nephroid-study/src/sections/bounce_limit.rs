@@ -132,8 +132,8 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         "Question 1.2",
         "The walk: specular bounces store nothing, the first hit is left to direct light, roulette decides the rest.",
         &format!(
-            "A limit of 20 bounces loses {} % of indirect light at ρ = 0.9. Roulette by the mean albedo does not make energy \
-             rise or fall in colour.",
+            "A limit of 20 bounces loses {} % of indirect light at ρ = 0.9. By algebra, and not by a run: roulette by the mean albedo \
+             keeps the mean energy in colour, too.",
             format::number(100.0 * powers[1].lost())
         ),
         "What is lost is ρ²⁰. Power times albedo over the chance to survive is right in the mean, channel by channel.",

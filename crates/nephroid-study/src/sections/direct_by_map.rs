@@ -14,7 +14,7 @@ use crate::section::{Section, Stop, Weight};
 pub const SECTION: Section = Section {
     id: "fig-2-4",
     report: "Fig 2.4",
-    title: "direct light by rays and from photons (questions 2.3 and 2.4)",
+    title: "direct light by rays and from photons (Question 2.3, Question 2.4)",
     weight: Weight { full: 40.0, quick: 3.0 },
     run,
 };

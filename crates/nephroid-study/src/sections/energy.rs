@@ -51,11 +51,14 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          indirect light, as the report found with its 1.25. The report thinks that \"the rate should be bigger\"; there is no \
          reason for that.",
     );
-    body.say(
+    body.say(&format!(
         "In a closed grey room each bounce keeps the part ρ of the light, so direct to indirect is (1 − ρ)/ρ, in a sphere at \
-         every point: 1.25 belongs to ρ = 0.44. A box whose open front is counted as black has about such a mean \
-         reflectance; its exact ratio depends on what the camera sees.",
-    );
+         every point: 1.25 belongs to ρ = 0.44. Our box, its open front counted as black, has a mean reflectance of {}, to \
+         which {} would belong; its ratio in the picture, {}, depends on what the camera sees.",
+        format::number(reflectance),
+        format::number(closed_box),
+        format::number(in_reference),
+    ));
     let look = Look::exposed(0.0);
     let alt = "A box with a red and a green wall and two white spheres";
     body.pair(
@@ -77,11 +80,13 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         ]
     };
     let boxes = [
-        ("Box, photon map", in_box, closed_box),
-        ("Box, path tracing", in_reference, closed_box),
-        ("Box, in the report", REPORT, closed_box),
+        ("Box, photon map", in_box, Some(closed_box)),
+        ("Box, path tracing", in_reference, Some(closed_box)),
+        ("Box, in the report", REPORT, None),
     ];
-    let boxes = boxes.map(|(name, a, b)| vec![name.to_owned(), format::number(a), format::number(b)]);
+    let boxes = boxes.map(|(name, a, b)| {
+        vec![name.to_owned(), format::number(a), b.map_or("–".to_owned(), format::number)]
+    });
     let rows = ratios.iter().map(row).chain(boxes).collect();
     body.table("Direct over indirect light", &["Scene", "Sum of pixels", "(1 − ρ)/ρ"], rows);
 
@@ -118,9 +123,13 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.numbers(numbers);
     body.finding(
         "Question 2.2",
-        &format!("A little more direct light than indirect: {} in our box, about 1.25 in theirs.", format::number(in_box)),
-        "It need not be more. And roulette by a mean albedo does not make energy rise or fall in coloured scenes.",
-        "In a closed room the ratio is (1 − ρ)/ρ; 1.25 is a mean reflectance of 0.44. Weights make up for the roulette.",
+        &format!(
+            "A little more direct light than indirect: {} in our box by path tracing, {} by photons; about 1.25 in theirs.",
+            format::number(in_reference),
+            format::number(in_box)
+        ),
+        "It need not be more. And, by algebra and not by a run, roulette by a mean albedo keeps the mean energy in coloured scenes.",
+        "In a closed room the ratio is (1 − ρ)/ρ; 1.25 is a mean reflectance of 0.44. Power is multiplied by albedo over the chance to survive.",
     );
     Ok(body)
 }

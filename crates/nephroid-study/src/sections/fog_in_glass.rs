@@ -9,6 +9,7 @@ use nephroid::texture::Image;
 use nephroid::world::World;
 
 use crate::body::{Body, Number};
+use crate::format;
 use crate::lab::Lab;
 use crate::picture::{Look, Picture};
 use crate::section::{Section, Stop, Weight};
@@ -47,32 +48,6 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let ((right_world, settings), (wrong_world, _)) = both(lab)?;
     let right = lab.render(&lab.recipe("report-3-9"))?;
     let wrong = lab.render_world(&wrong_world, settings.clone(), 1)?;
-    let mut body = Body::new();
-    body.say(
-        "The report took the whole room to be fog, the inside of the glass, too. Photons are then scattered within the sphere and \
-         leave it in any direction: less than half of the caustic is left. Its remedy, no medium inside the glass, is \
-         right; here a surface names what is on either side of it, so that any glass may hold any medium.",
-    );
-    body.say(
-        "The report's glass was also bright. Here the sphere turns milky, but hardly brighter than clear glass, which shows the lit fog \
-         behind it: a correct estimate of the same mistake has no bright sphere.",
-    );
-    let look = Look::exposed(0.0);
-    body.pair(
-        Picture::of(
-            &wrong,
-            &look,
-            "A glass sphere in fog, itself full of fog and milky; the caustic below is faint.",
-            "Wrong: fog inside the glass. The scene with the sphere's inside set to the fog, made in code",
-        )?,
-        Picture::of(
-            &right,
-            &look,
-            "The same sphere, clear; below it a bright cone in the fog and a bright spot on the floor.",
-            "Right: nothing inside the glass",
-        )?,
-    );
-
     let caustic = |world: &World| -> Result<f64, Stop> {
         let photons = record_photons(world, &settings, 0, lab.observer()).ok_or(Stop::Cancelled)?;
         Ok(photons.photons.iter().filter(|p| p.map == MapName::Caustic).map(power).sum())
@@ -86,6 +61,36 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         within_sphere(&right_world, &render.image)
     };
     let in_glass = glow(&wrong_world)? / glow(&right_world)?;
+
+    let mut body = Body::new();
+    body.say(&format!(
+        "The report took the whole room to be fog, the inside of the glass, too. Photons are then scattered within the sphere and \
+         leave it in any direction: {} of the caustic's power is left on surfaces. Its remedy, no medium inside the glass, is \
+         right; here a surface names what is on either side of it, so that any glass may hold any medium.",
+        format::number(caustic_wrong / caustic_right)
+    ));
+    body.say(&format!(
+        "The report's glass was also bright; it says (3.1.3) that the photons inside of the glass, and the march through it, add \
+         in-scattered light. That was not reproduced: in the middle of the sphere's picture the light of the fog is {} times that with \
+         clear glass, which shows the lit fog behind it. The sphere turns dull and grey.",
+        format::number(in_glass)
+    ));
+    let look = Look::exposed(0.0);
+    body.pair(
+        Picture::of(
+            &wrong,
+            &look,
+            "A glass sphere in fog, dull and grey inside; the cone of light and the spot below it are faint.",
+            "Wrong: fog inside the glass. The scene with the sphere's inside set to the fog, made in code",
+        )?,
+        Picture::of(
+            &right,
+            &look,
+            "The same sphere, clearer and with a bright rim; the cone in the fog and the spot on the floor are brighter.",
+            "Right: nothing inside the glass",
+        )?,
+    );
+
     body.numbers(vec![
         Number::within(
             "Power of caustic photons on surfaces, fog inside by none inside",
@@ -105,9 +110,12 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Fig 3.9",
         "Fog inside the glass weakens the caustic; no fog inside is the remedy.",
-        "The sphere is milky here, and hardly brighter than clear glass.",
-        "A photon that is scattered inside is none of the caustic any more. Why the report's sphere was bright its text does not tell \
-         enough to say.",
+        &format!(
+            "The bright glass was not reproduced: the fog's light in the sphere's picture is {} times that with clear glass.",
+            format::number(in_glass)
+        ),
+        "A photon that is scattered inside is none of the caustic any more. The report blames photons inside and the march there; the \
+         fog inside also dims what is behind it.",
     );
     Ok(body)
 }
@@ -128,8 +136,8 @@ fn run_photons(lab: &Lab) -> Result<Body, Stop> {
     let mut body = Body::new();
     body.say(
         "The photons themselves, projected to the picture: those of the volume map are pale, those of its caustic map red. With fog \
-         inside the glass the sphere is full of photons. Without, it is empty, and below it they \
-         crowd in the cone of the caustic. Drawing the maps is how the report found its mistake; \
+         inside the glass the sphere is full of red photons. Without, it is empty. The cone of the caustic is below both, \
+         and has more power where nothing is lost inside: a number below. Drawing the maps is how the report found its mistake; \
          nephroid photons does it for any scene.",
     );
     let picture = |world: &World, photons: &[MapPhoton], alt: &str, caption: &str| {
@@ -139,13 +147,13 @@ fn run_photons(lab: &Lab) -> Result<Body, Stop> {
         picture(
             &wrong_world,
             &wrong,
-            "Dots all over a room; within the outline of a sphere they are as many as around it.",
+            "Pale dots all over a room; red ones crowd in a sphere and in a cone that narrows below it.",
             "Wrong: fog inside the glass",
         )?,
         picture(
             &right_world,
             &right,
-            "Dots all over a room but in the sphere, and many red ones in a cone that narrows below it.",
+            "Pale and red dots all over a room, few within the outline of a sphere; red ones crowd in a cone below it alone.",
             "Right: nothing inside the glass",
         )?,
     );
@@ -182,7 +190,7 @@ fn run_photons(lab: &Lab) -> Result<Body, Stop> {
     ]);
     body.finding(
         "Fig 3.10",
-        "The photons show the mistake: crowded in the sphere, or in the caustic below it.",
+        "The photons show the mistake: they crowd in the sphere, where there should be none.",
         "The report shows its caustic map beside its volume map; both pictures here are of one map.",
         "So that the two can be compared.",
     );

@@ -59,11 +59,21 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     );
     let look = Look::exposed(0.5);
     let alt = "A glass sphere in a box full of fog; the lamp above it glows";
+    let fog = format!(
+        "σ_t = {}/m, σ_s = {}/m, a tenth of the report's 8 and 0.5 for the scale of our box",
+        format::number(SIGMA_T),
+        format::number(ALBEDO * SIGMA_T)
+    );
     let (report, ours) = (", the report's march", ", the beam estimate");
     for (k, wrong, right) in [(50, &report_few, &few), (300, &report_many, &many)] {
         body.pair(
-            Picture::of(wrong, &look, &format!("{alt}{report}, k = {k}."), &format!("k = {k}{report}"))?,
-            Picture::of(right, &look, &format!("{alt}{ours}, k = {k}."), &format!("k = {k}{ours}"))?,
+            Picture::of(
+                wrong,
+                &look,
+                &format!("{alt}{report}, k = {k}."),
+                &format!("k = {k}{report}; {fog}"),
+            )?,
+            Picture::of(right, &look, &format!("{alt}{ours}, k = {k}."), &format!("k = {k}{ours}; {fog}"))?,
         );
     }
     body.say(
@@ -77,7 +87,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     });
     body.table(
         "In-scattering of a step, by what is right",
-        &["Optical depth of a step", "Too bright by"],
+        &["Optical depth of a step", "Times the right value"],
         step_rows.to_vec(),
     );
 
@@ -121,7 +131,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Fig 3.7",
         "The lamp glows and the caustic is seen in the fog; more neighbours are smoother.",
-        "Interactions must not be asked for twice; a step's light is too bright by τ/(1 − e^(−τ)); 1/σ_s depends on where photons are \
+        "Interactions must not be asked for twice; a step's light is τ/(1 − e^(−τ)) times the right one; 1/σ_s depends on where photons are \
          stored.",
         "The drawn distance has the probability in it already; light is lost within a step, too.",
     );

@@ -44,8 +44,8 @@ fn run(_: &Lab) -> Result<Body, Stop> {
     body.say(
         "A kernel says how a photon's power is spread over the radius around it; all of it must be spread, so its integral is 1. \
          The report's cone, Epanechnikov and biweight kernels have their integrals right on surfaces. Its Gaussian has not: \
-         its factor 0.918 comes from a filter for pixels, and loses almost half of the light. That is why it looked smooth \
-         and diffuse: it is darker.",
+         its factor 0.918 comes from a filter for pixels, and loses almost half of the light. It looks smooth as it is hardly \
+         narrower than the box, and dark as its norm is wrong.",
     );
     body.say(
         "The norms for surfaces do not serve in media, where a ball takes the place of the disc: there the report's Epanechnikov \
@@ -68,7 +68,9 @@ fn run(_: &Lab) -> Result<Body, Stop> {
     };
     let row = |&(name, kernel): &(&str, Kernel)| {
         let norms = DIMENSIONS.map(|dimension| format::number(norm(kernel, dimension)));
-        let more = [variance(kernel), f64::from(kernel.equal_bandwidth_factor())].map(format::number);
+        let (noise, mass) = (variance(kernel), norm(kernel, DIMENSIONS[1]));
+        let more =
+            [noise, noise * mass * mass, f64::from(kernel.equal_bandwidth_factor())].map(format::number);
         [vec![name.to_owned()], norms.to_vec(), more.to_vec()].concat()
     };
     let head = [
@@ -76,17 +78,18 @@ fn run(_: &Lab) -> Result<Body, Stop> {
         "Integral, 1D",
         "Integral, 2D",
         "Integral, 3D",
-        "Variance by the box's",
+        "Variance by the box's, integral put to 1",
+        "The same as written",
         "k for equal blur",
     ];
     body.table(
-        "Integrals by quadrature, and what noise has at an equal radius",
+        "Integrals by quadrature, and the noise at an equal radius; as written a kernel that loses light loses noise with it",
         &head,
         KERNELS.iter().map(row).collect(),
     );
     body.say(
         "At an equal radius, a kernel that falls off uses fewer photons and is noisier: in this order the report found the \
-         kernels spotty. It compared radii more than kernels. At k multiplied by the last column all blur alike.",
+         kernels spotty. At one k it compared different blurs. At k multiplied by the last column all blur alike.",
     );
 
     let mut numbers = Vec::new();

@@ -21,7 +21,7 @@ use crate::wrong;
 pub const SECTION: Section = Section {
     id: "fig-2-1",
     report: "Fig 2.1",
-    title: "directions from a point light",
+    title: "directions from a point light (Question 1.1)",
     weight: Weight { full: 3.0, quick: 0.6 },
     run,
 };

@@ -115,7 +115,7 @@ fn power(lab: &Lab) -> Result<Body, Stop> {
     body.finding(
         "Fig 2.10",
         "Without 4π global illumination cannot be seen; with it walls colour one another.",
-        "Direct light was not too strong: the photons were too weak. (The text calls the figure 3.6.)",
+        "Probably direct light was not too strong, but the photons too weak. (The text calls the figure 3.6.)",
         "An intensity in W/sr is a power only when multiplied by the 4π sr of the sphere.",
     );
     Ok(body)

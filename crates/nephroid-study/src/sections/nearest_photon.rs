@@ -16,7 +16,7 @@ use crate::wrong;
 pub const SECTION: Section = Section {
     id: "equation-2-2",
     report: "Equation 2.2",
-    title: "beyond the report, what k − 1 changes",
+    title: "beyond the report, what k − 1 changes (Question 2.1)",
     weight: Weight { full: 8.0, quick: 2.5 },
     run,
 };

@@ -62,7 +62,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     };
     let (ratio_errors, narrowing_errors) = (errors(&in_ratio)?, errors(&narrowing)?);
     let chart = Chart::new("photons in the global map", "relMSE against the reference").logarithmic();
-    let chart = chart.points("k = N/100, as in the report", ratio_errors.clone());
+    let chart = chart.points("constant ratio, as in the report; here k = N/100", ratio_errors.clone());
     let chart = chart.points("k ∝ N^(2/3), the same at 10 000", narrowing_errors.clone());
     body.plot(chart.draw(
         "Two falling curves of error over the number of photons: that at a constant ratio flattens, the other falls on.",

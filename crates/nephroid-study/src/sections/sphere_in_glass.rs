@@ -16,7 +16,7 @@ use crate::statistics::integral;
 pub const SECTION: Section = Section {
     id: "fig-2-5",
     report: "Fig 2.5",
-    title: "a sphere in glass (question 2.5)",
+    title: "a sphere in glass (Question 2.5)",
     weight: Weight { full: 60.0, quick: 2.0 },
     run,
 };

@@ -32,8 +32,11 @@ const OPERATORS: [(&str, &str); 9] = [
     ("srgb", "No tone mapping: the display's curve"),
 ];
 
-/// Those whose curves are drawn: as many as can be told apart.
-const CURVES: [usize; 7] = [0, 2, 3, 4, 5, 6, 8];
+/// Those whose curves are drawn in each chart: eight can be told apart, and the first is in both.
+const CURVES: [&[usize]; 2] = [&[0, 2, 3, 4, 5, 6, 7, 8], &[0, 1]];
+
+/// Of a picture with so low a median on the display little but lights is to be seen.
+const DARK: f64 = 0.1;
 
 fn run(lab: &Lab) -> Result<Body, Stop> {
     let render = lab.render(&lab.recipe("report-2-14"))?;
@@ -44,7 +47,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let mut body = Body::new();
     body.say(
         "One render, shown in nine ways. The lamp is in the picture and hundreds of times as bright as the walls, so to divide by \
-         the maximum leaves the room black, with a gamma as without. Reinhard's operator brings the room's mean to middle \
+         the maximum leaves the room dark, with a gamma as without. Reinhard's operator brings the room's mean to middle \
          grey and bends what is brighter: it fits, as the report says.",
     );
     body.say(
@@ -53,31 +56,37 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
          its word, the mean has nothing to do with the picture, as a number below shows.",
     );
     let alt = "A box with a mirror ball, two glass balls and a visible lamp";
-    let pictures = looks.iter().zip(OPERATORS).map(|(look, (name, what))| {
-        let seen = match name {
-            "equalize" | "equalize-report" | "equalize-clamp:4" => "dark but for its lights",
-            _ => "with its walls to be seen",
-        };
-        Picture::of(&render, look, &format!("{alt}, {seen}."), what)
-    });
-    body.strip(pictures.collect::<Result<_, _>>()?);
-
-    let luminances: Vec<f64> = image.pixels.iter().map(|p| f64::from(p.luminance())).collect();
-    let chart = CURVES.iter().try_fold(
-        Chart::new("luminance, W/(m²·sr)", "value of the display").logarithmic_x().from(0.0),
-        |chart, &i| -> Result<Chart, Stop> { Ok(chart.line(OPERATORS[i].1, curve(&looks[i], image))) },
-    )?;
-    body.plot(chart.draw(
-        "Curves of display value over luminance. Equalising rises only near the maximum, Reinhard's operators bend slowly.",
-        "What each makes of a grey of this picture, after the display's curve. The walls lie between 0.1 and 3.",
-    )?);
-
-    let white = |i: usize| white_part(&looks[i].apply(image));
     let median = |i: usize| {
         let mut greens: Vec<f32> = looks[i].apply(image).pixels.iter().map(|p| p.g).collect();
         greens.sort_by(f32::total_cmp);
         f64::from(greens[greens.len() / 2])
     };
+    let pictures = looks.iter().zip(OPERATORS).enumerate().map(|(i, (look, (_, what)))| {
+        let seen = if median(i) < DARK { "dark but for its lights" } else { "with its walls to be seen" };
+        Picture::of(&render, look, &format!("{alt}, {seen}."), what)
+    });
+    body.strip(pictures.collect::<Result<_, _>>()?);
+
+    let luminances: Vec<f64> = image.pixels.iter().map(|p| f64::from(p.luminance())).collect();
+    let [chart, equalised] = CURVES.map(|curves| {
+        let chart = Chart::new("luminance, W/(m²·sr)", "value of the display").logarithmic_x().from(0.0);
+        curves.iter().fold(chart, |chart, &i| chart.line(OPERATORS[i].1, curve(&looks[i], image)))
+    });
+    let [least, low, high] = [0.0, 0.05, 0.95].map(|part| format::number(quantile(&luminances, part)));
+    let caption = format!(
+        "What each makes of a grey of this picture, after the display's curve. Nine tenths of the pixels lie between {low} and \
+         {high} W/(m²·sr), a twentieth below and a twentieth above."
+    );
+    body.plot(chart.draw(
+        "Curves of display value over luminance. Equalising rises only near the maximum, Reinhard's operators bend slowly.",
+        &caption,
+    )?);
+    body.plot(equalised.draw(
+        "Two curves of display value over luminance, by the maximum, and by the maximum less the minimum.",
+        &format!("Equalising in both forms. They differ by the least luminance, which is {least} W/(m²·sr) in this picture."),
+    )?);
+
+    let white = |i: usize| white_part(&looks[i].apply(image));
     let row = |i: usize| {
         let (name, what) = OPERATORS[i];
         let command = format!("--tonemap {name}");
@@ -104,7 +113,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
         ),
         Number::within(
             "Log-average luminance, 1/N in the exponent, by the median",
-            log_average / median_of(&luminances),
+            log_average / quantile(&luminances, 0.5),
             "",
             [0.5, 2.0],
             "Walls fill most of the picture, so that a mean of logarithms is near its middle.",
@@ -121,7 +130,7 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
             median(4),
             "",
             [0.2, 0.7],
-            "The key of 0.18 is 0.46 on the display; half of the picture is brighter, half darker.",
+            "The key of 0.18 is 0.43 on the display after L/(1 + L); half of the picture is brighter, half darker.",
         ),
         Number::within(
             "Median of the display, equalised",
@@ -150,10 +159,11 @@ fn log_averages(luminances: &[f64]) -> (f64, f64) {
     (libm::exp(sum / n), sum / std::f64::consts::LN_10 - libm::log10(n))
 }
 
-fn median_of(values: &[f64]) -> f64 {
+/// The value that so great a part is below.
+fn quantile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
+    sorted[((part * sorted.len() as f64) as usize).min(sorted.len() - 1)]
 }
 
 /// Of greys from 1 to 2 in even steps, the part that is shown as white, in per cent.

@@ -48,12 +48,12 @@ fn run(lab: &Lab) -> Result<Body, Stop> {
     let ratio = two.mean() / one.mean();
     let shown = |look: &Look| display_mean(&look.apply(&two.image)) / display_mean(&look.apply(&one.image));
     let (hidden, plain) = (shown(&by_maximum), shown(&fixed));
-    let energy = |image: &Image| image.pixels.iter().map(|p| f64::from(p.luminance())).sum::<f64>();
+    let energy = |image: &Image| image.pixels.iter().map(|p| f64::from(p.mean())).sum::<f64>();
     let row = |name: &str, image: &Image, mean: f64| {
         vec![name.to_owned(), format::number(mean), format::number(energy(image))]
     };
     let rows = vec![row("One light", &one.image, one.mean()), row("Two lights", &two.image, two.mean())];
-    let head = ["Picture", "Mean radiance, W/(m²·sr)", "Sum of luminances, W/(m²·sr)"];
+    let head = ["Picture", "Mean radiance, W/(m²·sr)", "Sum over pixels, W/(m²·sr)"];
     body.table("Light in the pictures", &head, rows);
     body.numbers(vec![
         Number::within(
