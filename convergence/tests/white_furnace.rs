@@ -44,10 +44,26 @@ fn methods() -> Vec<(&'static str, Method)> {
 
 #[track_caller]
 fn expect_every_pixel(name: &str, image: &Image, exact: f64) {
+    expect_within(name, image, exact, ROUNDING);
+}
+
+/// In glass the rays of photon mapping that look for lamps follow what carries less than a 64th by chance: of the 64ths that
+/// are left so of a pixel some are won and some lost.
+const CHANCE: f64 = 0.03;
+
+fn expect_every_pixel_in_glass(name: &str, image: &Image, exact: f64) {
+    let by_chance = ["photonmapper", "ppm", "vcm", "auto"].contains(&name);
+    expect_within(name, image, exact, if by_chance { CHANCE } else { ROUNDING });
+    let count = image.pixels.len() as f64;
+    let mean = image.pixels.iter().map(|pixel| f64::from(pixel.mean())).sum::<f64>() / count;
+    assert!((mean / exact - 1.0).abs() < 0.1 * CHANCE, "{name}: the mean is {mean} and not {exact}");
+}
+
+fn expect_within(name: &str, image: &Image, exact: f64, tolerance: f64) {
     for (i, pixel) in image.pixels.iter().enumerate() {
         for value in pixel.to_array() {
             let error = (f64::from(value) / exact - 1.0).abs();
-            assert!(error < ROUNDING, "{name}: pixel {i} is {value} and not {exact}");
+            assert!(error < tolerance, "{name}: pixel {i} is {value} and not {exact}");
         }
     }
 }
@@ -99,7 +115,7 @@ fn glass_vanishes_in_every_pixel() {
     b.scene.shapes.retain(|s| !matches!(s.geometry, Geometry::Disk | Geometry::Cylinder { .. }));
     let world = b.build();
     for (name, method) in methods() {
-        expect_every_pixel(name, &render(&world, method, 4, 2), 1.0);
+        expect_every_pixel_in_glass(name, &render(&world, method, 4, 2), 1.0);
     }
 }
 
@@ -114,7 +130,7 @@ fn thin_glass_vanishes_in_every_pixel() {
     arrangement(thin, &mut b);
     let world = b.build();
     for (name, method) in methods() {
-        expect_every_pixel(name, &render(&world, method, 4, 3), 1.0);
+        expect_every_pixel_in_glass(name, &render(&world, method, 4, 3), 1.0);
     }
 }
 
@@ -127,7 +143,7 @@ fn radiance_is_n_squared_inside_glass() {
         b.sphere(Vec3::ZERO, 1.0, glass);
         let world = b.build();
         for (name, method) in methods() {
-            expect_every_pixel(name, &render(&world, method, 4, 4), f64::from(n * n));
+            expect_every_pixel_in_glass(name, &render(&world, method, 4, 4), f64::from(n * n));
         }
     }
 }
