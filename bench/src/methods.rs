@@ -3,7 +3,7 @@
 use nephroid::integrator::{
     AutoConfig, LightTracerConfig, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig,
 };
-use nephroid_formats::mitsuba::SceneFile;
+use nephroid_formats::SceneFile;
 
 /// The integrator of a name, with its defaults.
 pub fn method(name: &str, max_depth: Option<u32>) -> Option<Method> {

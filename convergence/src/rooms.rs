@@ -9,7 +9,8 @@ use nephroid::film::Filter;
 use nephroid::integrator::{Method, PpmConfig};
 use nephroid::material::Material;
 use nephroid::world::World;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::Options;
+use nephroid_formats::mitsuba::read_scene;
 use nephroid_formats::vfs::DiskFiles;
 use nephroid_testkit::MeanTest;
 

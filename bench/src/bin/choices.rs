@@ -35,7 +35,8 @@ use nephroid::world::World;
 use nephroid_bench::cpu_time;
 use nephroid_bench::methods::{known_names, max_depth, method};
 use nephroid_bench::reference::{Reference, pairs_of_folders};
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 /// The integrators compared, where they exist.

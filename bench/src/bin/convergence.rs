@@ -29,7 +29,8 @@ use nephroid_bench::denoise::{self, GUIDES, denoised};
 use nephroid_bench::methods::{known_names, max_depth, method};
 use nephroid_bench::reference::{Comparison, Reference, pairs_of_folders};
 use nephroid_denoise::Denoiser;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 /// What may be given beside scenes and references.

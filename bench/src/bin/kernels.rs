@@ -25,7 +25,8 @@ use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::Textures;
 use nephroid::transport::{Extras, MapPlan, PhotonPlan, WalkSettings, photon_pass};
 use nephroid::world::World;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 const RAYS: usize = 20_000;

@@ -14,7 +14,8 @@ use nephroid::transport::VolumeKind;
 use nephroid::world::World;
 use nephroid_bench::cpu_time;
 use nephroid_formats::image::read_image;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 /// What is compared: what maps hold, and how they are read.

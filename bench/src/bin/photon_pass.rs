@@ -10,7 +10,8 @@ use nephroid::observer::Silent;
 use nephroid::transport::{Extras, MapPlan, PhotonPlan, WalkSettings, photon_pass};
 use nephroid::world::World;
 use nephroid_bench::cpu_time;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 const PATHS: u64 = 1 << 20;

@@ -11,7 +11,7 @@ use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::Texture;
 use nephroid::world::World;
-use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue};
+use nephroid_formats::{IntegratorRequest, ParameterValue};
 use serde_json::{Map, Value, json};
 
 use crate::args::{InfoArgs, LimitArgs};

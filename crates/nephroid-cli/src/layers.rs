@@ -2,8 +2,8 @@
 
 use nephroid::film::{Aov, AovFilm, AovImage};
 use nephroid::integrator::Method;
+use nephroid_formats::AovLayer;
 use nephroid_formats::image::{Layer, LayerData};
-use nephroid_formats::mitsuba::AovLayer;
 
 use crate::console::Messages;
 use crate::denoise::{GUIDES, NOISY};

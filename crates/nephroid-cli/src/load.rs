@@ -8,8 +8,9 @@ use nephroid::scene::{Remark, Scene, SceneError, Subject};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
-use nephroid_formats::mitsuba::{Options, Origins, SceneFile, read_scene, read_scene_str};
+use nephroid_formats::mitsuba::{read_scene, read_scene_str};
 use nephroid_formats::vfs::DiskFiles;
+use nephroid_formats::{Options, Origins, SceneFile};
 
 use crate::args::SceneArgs;
 use crate::builtin::{self, BuiltinScene};

@@ -2,8 +2,8 @@
 
 use nephroid::integrator::{PhotonMapperConfig, VolumeEstimate};
 use nephroid::transport::{Fog, VolumeKind};
+use nephroid_formats::SceneFile;
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics};
-use nephroid_formats::mitsuba::SceneFile;
 
 use crate::console::Messages;
 use crate::exit::Failure;

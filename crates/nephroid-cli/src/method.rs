@@ -2,7 +2,7 @@
 
 use nephroid::integrator::{AutoConfig, LightTracerConfig, Method, PathConfig, PpmConfig, VcmConfig};
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Severity};
-use nephroid_formats::mitsuba::{IntegratorRequest, ParameterValue, SceneFile};
+use nephroid_formats::{IntegratorRequest, ParameterValue, SceneFile};
 use serde_json::{Map, Value, json};
 
 use crate::console::Messages;

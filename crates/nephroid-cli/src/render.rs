@@ -8,9 +8,9 @@ use std::time::Instant;
 use nephroid::film::Quality;
 use nephroid::session::RenderSettings;
 use nephroid_denoise::Denoiser;
+use nephroid_formats::SceneFile;
 use nephroid_formats::film_file::identity_differences;
 use nephroid_formats::image::{MAX_PIXELS, check_writable};
-use nephroid_formats::mitsuba::SceneFile;
 
 use crate::args::{LimitArgs, RenderArgs};
 use crate::builtin;

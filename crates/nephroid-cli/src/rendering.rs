@@ -7,9 +7,9 @@ use nephroid::film::{AovFilm, Convergence, Film, Quality};
 use nephroid::integrator::{Choice, LightTracerConfig, Method};
 use nephroid::session::{Place, RenderPlan, RenderSettings, Session, Statistics};
 use nephroid::world::World;
+use nephroid_formats::SceneFile;
 use nephroid_formats::diagnostic::Diagnostic;
 use nephroid_formats::film_file::Covered;
-use nephroid_formats::mitsuba::SceneFile;
 
 use crate::checkpoint::Checkpoint;
 use crate::console::Messages;

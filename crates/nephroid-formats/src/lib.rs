@@ -3,8 +3,14 @@
 pub mod diagnostic;
 pub mod film_file;
 pub mod image;
+mod integrator_request;
+mod log;
 pub mod mesh;
 pub mod mitsuba;
 pub mod photons;
+mod scene_file;
 pub mod vfs;
 pub mod volume;
+
+pub use integrator_request::{AovLayer, IntegratorParameter, IntegratorRequest, ParameterValue};
+pub use scene_file::{Options, Origins, SceneFile};

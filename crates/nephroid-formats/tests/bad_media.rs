@@ -1,7 +1,8 @@
 //! Media that must be refused, and the messages a user sees. Where a message changes on purpose, change it
 //! here.
 
-use nephroid_formats::mitsuba::{Options, read_scene_str};
+use nephroid_formats::Options;
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
 
 /// One cell with `value` in it and an upper corner of the box at (`end`, 1, 1).

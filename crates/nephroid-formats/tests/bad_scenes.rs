@@ -1,7 +1,8 @@
 //! Scenes that must be refused, and the messages a user sees. Where a message changes on purpose,
 //! change it here.
 
-use nephroid_formats::mitsuba::{Options, read_scene_str};
+use nephroid_formats::Options;
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
 
 /// Files that broken scenes refer to; most are broken themselves.

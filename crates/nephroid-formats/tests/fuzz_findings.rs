@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
+use nephroid_formats::Options;
 use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
-use nephroid_formats::mitsuba::{Options, read_scene_str};
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
 use nephroid_formats::volume::read_vol;
 

@@ -14,8 +14,9 @@ use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::{BitmapFilter, Texture, Wrap};
 use nephroid_formats::diagnostic::{Location, Severity};
-use nephroid_formats::mitsuba::{Options, ParameterValue, SceneFile, read_scene, read_scene_str};
+use nephroid_formats::mitsuba::{read_scene, read_scene_str};
 use nephroid_formats::vfs::MemoryFiles;
+use nephroid_formats::{Options, ParameterValue, SceneFile};
 
 fn read_with(content: &str, files: &MemoryFiles, options: &Options) -> SceneFile {
     let text =

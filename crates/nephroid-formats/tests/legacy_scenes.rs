@@ -9,8 +9,9 @@ use nephroid::medium::Coefficient;
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
 use nephroid::texture::Texture;
-use nephroid_formats::mitsuba::{Options, SceneFile, read_scene_str};
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
+use nephroid_formats::{Options, SceneFile};
 
 /// One cell with 7 in it, in a box of side 2 around the origin.
 fn vol() -> Vec<u8> {

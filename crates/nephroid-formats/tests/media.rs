@@ -6,8 +6,9 @@ use nephroid::math::{Transform, Vec3};
 use nephroid::medium::{Coefficient, GridValues, Medium, Phase};
 use nephroid::scene::Scene;
 use nephroid_formats::diagnostic::Location;
-use nephroid_formats::mitsuba::{Options, SceneFile, read_scene_str};
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
+use nephroid_formats::{Options, SceneFile};
 
 /// 2 × 1 × 1 cells with 1 and 3 in them, in a box from (−1, 0, 0) to (1, 4, 8).
 fn grey_vol() -> Vec<u8> {

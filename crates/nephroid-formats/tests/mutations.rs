@@ -1,8 +1,9 @@
 //! Random damage to good files must never end in a panic.
 
 use nephroid::medium::GridValues;
+use nephroid_formats::Options;
 use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
-use nephroid_formats::mitsuba::{Options, read_scene_str};
+use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
 use nephroid_formats::volume::read_vol;
 use proptest::prelude::*;

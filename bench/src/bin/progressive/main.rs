@@ -23,7 +23,8 @@ use nephroid::session::{RenderSettings, Session};
 use nephroid::texture::Image;
 use nephroid::world::World;
 use nephroid_bench::cpu_time;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::DiskFiles;
 
 struct Arguments {

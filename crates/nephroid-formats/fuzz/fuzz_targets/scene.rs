@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use nephroid::world::World;
-use nephroid_formats::mitsuba::{Options, read_scene};
+use nephroid_formats::mitsuba::read_scene;
+use nephroid_formats::Options;
 use nephroid_formats::vfs::MemoryFiles;
 
 static FILES: LazyLock<MemoryFiles> = LazyLock::new(|| {

@@ -4,8 +4,8 @@ use nephroid::handle::Handle;
 use nephroid::shape::{Group, Instance};
 
 use super::document::Element;
-use super::parameters::shortened;
 use super::reader::{Outcome, Reader};
+use crate::log::shortened;
 
 impl<'t> Reader<'t> {
     /// A shapegroup, read once however many instances it has. `None` if the log says why.

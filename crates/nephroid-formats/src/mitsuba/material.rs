@@ -8,12 +8,12 @@ use nephroid::texture::Texture;
 use super::document::Element;
 use super::metals::{Known, metal, names};
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
-use super::parameters::shortened;
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
+use crate::log::shortened;
 
 /// Indices of refraction by name, at 589 nm and room temperature (Hecht, Optics, 4th edition).
 const IORS: [(&str, f32); 23] = [

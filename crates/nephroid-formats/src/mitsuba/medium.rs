@@ -6,12 +6,12 @@ use nephroid::medium::{Coefficient, Medium, Phase};
 
 use super::document::Element;
 use super::names::{MEDIA, PHASES, PHASES_LATER};
-use super::parameters::shortened;
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
+use crate::log::shortened;
 
 impl<'t> Reader<'t> {
     /// A `<medium>`, read once however often it is referred to. `None` if the log says why.

@@ -12,7 +12,6 @@ mod emitter;
 mod group;
 mod integrator;
 mod legacy;
-mod log;
 mod material;
 mod medium;
 mod metals;
@@ -30,71 +29,17 @@ mod transform;
 mod value;
 mod volume;
 
-pub use integrator::{AovLayer, IntegratorParameter, IntegratorRequest, ParameterValue};
-
 use std::path::Path;
 
 use nephroid::scene::Scene;
 
 use self::document::{Document, Element};
-use self::log::Log;
 use self::reader::Reader;
 use self::value::Ids;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::log::Log;
+use crate::scene_file::{Options, Origins, SceneFile};
 use crate::vfs::Files;
-
-/// How to read a scene.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Values for the scene's `$parameters`, before its own defaults.
-    pub defines: Vec<(String, String)>,
-    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each; else
-    /// they are errors.
-    pub lenient: bool,
-}
-
-/// A scene as its file describes it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneFile {
-    /// What is to be seen.
-    pub scene: Scene,
-    /// How to render it.
-    pub integrator: IntegratorRequest,
-    /// Samples in a pixel, if the file says.
-    pub sample_count: Option<u32>,
-    /// What may not be as intended.
-    pub warnings: Vec<Diagnostic>,
-    /// Where the parts of the scene stand in the file.
-    pub origins: Origins,
-}
-
-/// Where the parts of a scene stand in its file, by their index in the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Origins {
-    /// The scene as a whole.
-    pub scene: Location,
-    /// The camera and its film.
-    pub camera: Location,
-    /// Each of [`Scene::shapes`], then each shape of [`Scene::groups`].
-    pub shapes: Vec<Location>,
-    /// Each of [`Scene::groups`].
-    pub groups: Vec<Location>,
-    /// Each of [`Scene::instances`].
-    pub instances: Vec<Location>,
-    /// Each of [`Scene::lights`].
-    pub lights: Vec<Location>,
-    /// Each of [`Textures::list`](nephroid::texture::Textures::list): a texture, or the property that is a
-    /// colour.
-    pub textures: Vec<Location>,
-    /// Each of [`Textures::images`](nephroid::texture::Textures::images): where its file is first named.
-    pub images: Vec<Location>,
-    /// Each of [`Scene::materials`]. A default material has the place of the first shape it is for.
-    pub materials: Vec<Location>,
-    /// Each of [`Media::list`](nephroid::medium::Media::list).
-    pub media: Vec<Location>,
-    /// Each of [`Media::grids`](nephroid::medium::Media::grids): where its file is first named.
-    pub grids: Vec<Location>,
-}
 
 /// Reads a scene and all files it refers to.
 ///
@@ -145,19 +90,7 @@ fn read_bytes(
 
 fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Log) -> Option<SceneFile> {
     let ids = collect_ids(document, log);
-    let origins = Origins {
-        scene: document.root.clone(),
-        camera: document.root.clone(),
-        shapes: Vec::new(),
-        groups: Vec::new(),
-        instances: Vec::new(),
-        lights: Vec::new(),
-        textures: Vec::new(),
-        images: Vec::new(),
-        materials: Vec::new(),
-        media: Vec::new(),
-        grids: Vec::new(),
-    };
+    let origins = Origins::at(document.root.clone());
     let mut reader = Reader::new(&ids, log, files, &document.folders, options.lenient, origins);
     let integrator = reader.integrator(&document.elements);
     let sensor = reader.sensor(&document.elements);

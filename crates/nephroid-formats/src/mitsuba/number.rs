@@ -1,6 +1,6 @@
 //! Numbers and lists of numbers as scenes write them.
 
-use super::parameters::shortened;
+use crate::log::shortened;
 
 /// A finite number that fits a single-precision float.
 pub(super) fn float(text: &str) -> Result<f64, String> {

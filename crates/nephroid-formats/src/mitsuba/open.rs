@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::log::Log;
 use crate::diagnostic::{Location, Source};
+use crate::log::Log;
 use crate::vfs::Files;
 
 /// Bytes of XML in one scene.

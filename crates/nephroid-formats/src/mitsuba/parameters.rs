@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use super::log::Log;
 use crate::diagnostic::{Diagnostic, Location};
+use crate::log::{Log, shortened};
 
 /// A default may refer to other parameters this many times in a row.
 const MAX_NESTING: usize = 16;
@@ -122,14 +122,6 @@ impl Parameters {
 enum Trouble {
     Undefined(String),
     Endless,
-}
-
-/// At most 40 characters of a text, for messages.
-pub(super) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(40) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_string(),
-    }
 }
 
 #[cfg(test)]

@@ -5,11 +5,10 @@ use std::cell::RefCell;
 use nephroid::math::{Transform, Vec3};
 
 use super::document::Element;
-use super::log::Log;
 use super::names::{PROPERTY_NAMES, property_is_known};
-use super::parameters::shortened;
 use super::value::{Ids, Property, Value, property};
 use crate::diagnostic::{Diagnostic, Location};
+use crate::log::{Log, shortened};
 
 /// An element such as `<bsdf type="…">` with its properties.
 pub(super) struct Plugin<'t> {

@@ -10,16 +10,15 @@ use nephroid::medium::{Media, Medium};
 use nephroid::shape::{Group, Instance, Mesh, Shape};
 use nephroid::texture::{Image, Texture, Textures};
 
-use super::Origins;
 use super::document::Element;
-use super::log::Log;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
 use super::open::find;
-use super::parameters::shortened;
 use super::properties::Plugin;
 use super::value::Ids;
 use super::volume::StoredGrid;
 use crate::diagnostic::{Diagnostic, Location};
+use crate::log::{Log, shortened};
+use crate::scene_file::Origins;
 use crate::vfs::Files;
 
 /// Materials in materials, or textures in textures, through references too.

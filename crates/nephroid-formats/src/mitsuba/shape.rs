@@ -8,11 +8,11 @@ use nephroid::texture::Texture;
 
 use super::document::Element;
 use super::names::{SHAPES, SHAPES_LATER};
-use super::parameters::shortened;
 use super::properties::Plugin;
 use super::reader::Reader;
 use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
+use crate::log::shortened;
 use crate::mesh::{MeshOptions, read_obj, read_ply};
 
 impl<'t> Reader<'t> {

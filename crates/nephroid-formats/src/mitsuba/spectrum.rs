@@ -4,7 +4,7 @@ use nephroid::color::Rgb;
 
 use super::cie1931::{D65, FIRST_NM, OBSERVER, STEP_NM};
 use super::number::{float, floats, words};
-use super::parameters::shortened;
+use crate::log::shortened;
 
 /// Width of the steps in which a spectrum is integrated.
 const INTEGRATION_STEP_NM: f64 = 0.5;

@@ -7,13 +7,13 @@ use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Image, Texture, Wrap
 
 use super::document::Element;
 use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
-use super::parameters::shortened;
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::{Role, Spectrum};
 use super::value::{Property, Value};
 use crate::diagnostic::Location;
 use crate::image::read_texture;
+use crate::log::shortened;
 
 /// A colour, or a texture that was read.
 enum Paint {

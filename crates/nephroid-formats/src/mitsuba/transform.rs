@@ -3,10 +3,9 @@
 use nephroid::math::{DAffine3, DMat3, DVec3, Transform};
 
 use super::document::{Attribute, Element};
-use super::log::Log;
 use super::number::{float, floats};
-use super::parameters::shortened;
 use crate::diagnostic::Diagnostic;
+use crate::log::{Log, shortened};
 
 const STEPS: [&str; 5] = ["translate", "rotate", "scale", "lookat", "matrix"];
 

@@ -6,13 +6,12 @@ use std::collections::BTreeMap;
 use nephroid::math::{DVec3, Transform};
 
 use super::document::Element;
-use super::log::Log;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
 use super::number::{boolean, floats, integer};
-use super::parameters::shortened;
 use super::spectrum::Spectrum;
 use super::transform::{self, list, number};
 use crate::diagnostic::{Diagnostic, Location};
+use crate::log::{Log, shortened};
 
 /// Elements by their `id`.
 pub(super) type Ids<'t> = BTreeMap<&'t str, &'t Element>;

@@ -7,12 +7,12 @@ const MAX_MESSAGES: usize = 500;
 
 /// Collects messages while a scene is read, so that one reading shows all mistakes.
 #[derive(Default)]
-pub(super) struct Log {
+pub(crate) struct Log {
     list: RefCell<Vec<Diagnostic>>,
 }
 
 impl Log {
-    pub(super) fn push(&self, diagnostic: Diagnostic) {
+    pub(crate) fn push(&self, diagnostic: Diagnostic) {
         let mut list = self.list.borrow_mut();
         // What is wrong with a value once is not worth saying twice, as it would be of an undefined
         // parameter that is no number either. Several things can be wrong with an element.
@@ -29,23 +29,31 @@ impl Log {
         }
     }
 
-    pub(super) fn error(&self, at: &Location, message: impl Into<String>) {
+    pub(crate) fn error(&self, at: &Location, message: impl Into<String>) {
         self.push(Diagnostic::error(at, message));
     }
 
-    pub(super) fn warn(&self, at: &Location, message: impl Into<String>) {
+    pub(crate) fn warn(&self, at: &Location, message: impl Into<String>) {
         self.push(Diagnostic::warning(at, message));
     }
 
-    pub(super) fn has_errors(&self) -> bool {
+    pub(crate) fn has_errors(&self) -> bool {
         self.list.borrow().iter().any(is_error)
     }
 
-    pub(super) fn into_list(self) -> Vec<Diagnostic> {
+    pub(crate) fn into_list(self) -> Vec<Diagnostic> {
         self.list.into_inner()
     }
 }
 
 fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.severity == Severity::Error
+}
+
+/// At most 40 characters of a text, for messages.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_string(),
+    }
 }

@@ -1,0 +1,78 @@
+//! What every reader of scenes gives: the scene, how its file wants it rendered, and where its parts stand.
+
+use nephroid::scene::Scene;
+
+use crate::diagnostic::{Diagnostic, Location};
+use crate::integrator_request::IntegratorRequest;
+
+/// How to read a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Values for the scene's `$parameters`, before its own defaults.
+    pub defines: Vec<(String, String)>,
+    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each; else
+    /// they are errors.
+    pub lenient: bool,
+}
+
+/// A scene as its file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// What is to be seen.
+    pub scene: Scene,
+    /// How to render it.
+    pub integrator: IntegratorRequest,
+    /// Samples in a pixel, if the file says.
+    pub sample_count: Option<u32>,
+    /// What may not be as intended.
+    pub warnings: Vec<Diagnostic>,
+    /// Where the parts of the scene stand in the file.
+    pub origins: Origins,
+}
+
+/// Where the parts of a scene stand in its file, by their index in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origins {
+    /// The scene as a whole.
+    pub scene: Location,
+    /// The camera and its film.
+    pub camera: Location,
+    /// Each of [`Scene::shapes`], then each shape of [`Scene::groups`].
+    pub shapes: Vec<Location>,
+    /// Each of [`Scene::groups`].
+    pub groups: Vec<Location>,
+    /// Each of [`Scene::instances`].
+    pub instances: Vec<Location>,
+    /// Each of [`Scene::lights`].
+    pub lights: Vec<Location>,
+    /// Each of [`Textures::list`](nephroid::texture::Textures::list): a texture, or the property that is a
+    /// colour.
+    pub textures: Vec<Location>,
+    /// Each of [`Textures::images`](nephroid::texture::Textures::images): where its file is first named.
+    pub images: Vec<Location>,
+    /// Each of [`Scene::materials`]. A default material has the place of the first shape it is for.
+    pub materials: Vec<Location>,
+    /// Each of [`Media::list`](nephroid::medium::Media::list).
+    pub media: Vec<Location>,
+    /// Each of [`Media::grids`](nephroid::medium::Media::grids): where its file is first named.
+    pub grids: Vec<Location>,
+}
+
+impl Origins {
+    /// Those of a scene with nothing in it yet.
+    pub fn at(scene: Location) -> Self {
+        Self {
+            camera: scene.clone(),
+            scene,
+            shapes: Vec::new(),
+            groups: Vec::new(),
+            instances: Vec::new(),
+            lights: Vec::new(),
+            textures: Vec::new(),
+            images: Vec::new(),
+            materials: Vec::new(),
+            media: Vec::new(),
+            grids: Vec::new(),
+        }
+    }
+}
