@@ -62,6 +62,7 @@ pub struct Bsdf {
     ng: Vec3,
     frame: Frame,
     lobes: Lobes,
+    disperses: bool,
 }
 
 /// The kinds of scattering; one file each.
@@ -78,7 +79,7 @@ pub(super) enum Lobes {
 
 impl Bsdf {
     pub(super) fn new(ng: Vec3, frame: Frame, lobes: Lobes) -> Self {
-        Self { ng, frame, lobes }
+        Self { ng, frame, lobes, disperses: false }
     }
 
     /// The same place with no surface.
@@ -93,6 +94,17 @@ impl Bsdf {
             Lobes::Dielectric(own) => Self { lobes: Lobes::Dielectric(Dielectric { eta, ..own }), ..self },
             _ => self,
         }
+    }
+
+    /// The same, the boundary of a glass that takes light apart, met by a path of all wavelengths.
+    pub(crate) fn dispersing(self) -> Self {
+        Self { disperses: matches!(self.lobes, Lobes::Dielectric(_)), ..self }
+    }
+
+    /// Whether other wavelengths are refracted another way, so that a path must be of a single one.
+    #[inline]
+    pub(crate) fn disperses(&self) -> bool {
+        self.disperses
     }
 
     /// Whether all scattering is in Dirac lobes, so that there is no density to estimate here.

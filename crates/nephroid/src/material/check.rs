@@ -35,6 +35,13 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
             problems.opacity(*opacity);
             problems.stored_before("inside", materials, material, *inside);
         }
+        Material::Dispersive { dispersion, inside } => {
+            problems.list.extend(dispersion.problem());
+            problems.stored_before("inside", materials, material, *inside);
+            if materials.contains(*inside) && !matches!(materials[*inside], Material::Dielectric { .. }) {
+                problems.add("only a dielectric can be dispersive");
+            }
+        }
         Material::Null => {}
     }
     problems.list
@@ -177,7 +184,7 @@ impl Problems<'_> {
 /// The name of a material that light passes through.
 fn two_sided_already(material: &Material) -> Option<&'static str> {
     match material {
-        Material::Dielectric { .. } => Some("a dielectric"),
+        Material::Dielectric { .. } | Material::Dispersive { .. } => Some("a dielectric"),
         Material::ThinDielectric { .. } => Some("a thin dielectric"),
         Material::Null => Some("a null material"),
         Material::Diffuse { .. }

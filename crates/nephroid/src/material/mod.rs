@@ -7,6 +7,7 @@ mod bsdf;
 mod check;
 mod conductor;
 mod dielectric;
+mod dispersion;
 mod fresnel;
 mod lambertian;
 mod mask;
@@ -17,6 +18,7 @@ mod surface;
 pub(crate) use bsdf::segments_by;
 pub use bsdf::{Bsdf, BsdfSample, Transport};
 pub use check::check;
+pub use dispersion::Dispersion;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric};
 pub use surface::Surface;
 
@@ -94,6 +96,14 @@ pub enum Material {
         /// their luminance.
         opacity: Handle<Texture>,
         /// How the surface scatters where it is there.
+        inside: Handle<Material>,
+    },
+    /// Glass that takes light apart: its `int_ior` is the [`Dispersion`]'s, for paths of one wavelength; where there is none yet,
+    /// and for whoever asks for the index, it is as it says.
+    Dispersive {
+        /// The index of refraction on the side the normal points away from.
+        dispersion: Dispersion,
+        /// A dielectric boundary.
         inside: Handle<Material>,
     },
     /// Nothing: light passes as if the surface were not there.
@@ -193,6 +203,7 @@ impl Material {
             | Self::Phong { .. }
             | Self::Conductor { .. }
             | Self::TwoSided { .. }
+            | Self::Dispersive { .. }
             | Self::Mask { .. } => Lobes::Black,
         }
     }

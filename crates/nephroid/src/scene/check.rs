@@ -257,7 +257,10 @@ fn check_priority(scene: &Scene, shape: &Shape, subject: Subject, problems: &mut
         problems.add(subject, message);
     }
     if scene.materials.contains(shape.material)
-        && !matches!(scene.materials[shape.material], Material::Dielectric { .. } | Material::Null)
+        && !matches!(
+            scene.materials[shape.material],
+            Material::Dielectric { .. } | Material::Dispersive { .. } | Material::Null
+        )
     {
         let message = "only what light goes into has a priority: make it a smooth dielectric or `null`, or take \
                        the priority away";

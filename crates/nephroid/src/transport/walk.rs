@@ -235,7 +235,9 @@ fn step(
         return Next::Stop;
     };
     let wo = -walker.ray.direction;
-    let bsdf = world.bsdf_within(&hit, wo, &walker.inside);
+    let mut power = walker.power;
+    let bsdf = world.meet(&hit, wo, &mut walker.inside, &mut power, sampler);
+    walker.gamble(walker.power, power);
     if bsdf.is_null() {
         walker.inside = world.cross(walker.inside, &hit, -wo, -wo);
         walker.ray = leave(&hit.point, -wo);

@@ -6,6 +6,7 @@ mod cutout;
 #[cfg(test)]
 mod cutout_tests;
 mod glow;
+mod hues;
 mod level;
 mod nest;
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::hues::Hues;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
@@ -58,6 +60,8 @@ pub struct World {
     /// Emitters as next event estimation asks them.
     for_direct: Option<Discrete>,
     camera: CameraRays,
+    /// What paths are taken apart into; `None` if no glass does that.
+    hues: Option<Hues>,
     bounds: Bounds,
     aims: Aims,
     /// What each emitter is in the scene.
@@ -86,6 +90,8 @@ struct Surfaced {
     boundary: Option<Boundary>,
     /// Its place among the shapes that have a priority; 0 if it has none.
     rank: Rank,
+    /// Whether it refracts each wavelength another way.
+    disperses: bool,
 }
 
 /// Where a ray meets a surface, as the search finds it: see [`World::nearest`].
@@ -269,7 +275,7 @@ fn is_dirac(materials: &Arena<Material>, material: Handle<Material>) -> bool {
     match materials[material] {
         Material::Conductor { .. } | Material::Dielectric { .. } | Material::ThinDielectric { .. } => true,
         Material::TwoSided { front, back } => is_dirac(materials, front) || is_dirac(materials, back),
-        Material::Mask { inside, .. } => is_dirac(materials, inside),
+        Material::Mask { inside, .. } | Material::Dispersive { inside, .. } => is_dirac(materials, inside),
         Material::Diffuse { .. } | Material::Phong { .. } | Material::Null => false,
     }
 }

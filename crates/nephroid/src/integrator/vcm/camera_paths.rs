@@ -298,7 +298,7 @@ impl Estimator for Camera<'_> {
                 self.meet(&mut walk, radiance, lamp, &mut out, probe);
             }
             walk.length += hit.t;
-            let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
+            let bsdf = world.meet(&hit, wo, &mut walk.inside, &mut walk.throughput, &mut sample.sampler);
             if bsdf.is_null() {
                 let direction = walk.ray.direction;
                 walk.leave(world, &hit, direction);
