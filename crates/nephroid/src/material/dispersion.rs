@@ -68,7 +68,9 @@ impl Material {
         let mut material = material;
         loop {
             match materials[material] {
-                Self::Mask { inside, .. } => material = inside,
+                Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
+                    material = inside
+                }
                 Self::Dispersive { dispersion, .. } => return Some(dispersion),
                 _ => return None,
             }

@@ -205,6 +205,7 @@ fn the_zoo_has_every_material() {
         Material::Null => 6,
         Material::Mask { .. } => 7,
         Material::Dispersive { .. } => 8,
+        _ => 9,
     };
     for wanted in 0..=8 {
         assert!(zoo.cases.iter().any(|case| kind(&zoo.materials[case.material]) == wanted), "{wanted}");
