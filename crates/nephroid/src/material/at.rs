@@ -41,7 +41,7 @@ impl Material {
                     Self::TwoSided { front, .. } => front,
                     Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => inside,
                     Self::Blend { weight, first, second } => {
-                        if textures.eval(weight, surface.uv).mean() > 0.5 { second } else { first }
+                        if textures.eval(weight, surface.at).mean() > 0.5 { second } else { first }
                     }
                     _ => break,
                 }
@@ -53,7 +53,7 @@ impl Material {
     /// The lobes seen from the side the normal points to, or from the other one.
     fn lobes(&self, textures: &Textures, surface: &Surface, in_front: bool) -> Lobes {
         let read = |texture: Handle<Texture>| {
-            textures.eval(texture, surface.uv).map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 })
+            textures.eval(texture, surface.at).map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 })
         };
         match *self {
             Self::Null => Lobes::Null,
