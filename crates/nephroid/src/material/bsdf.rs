@@ -46,6 +46,12 @@ impl BsdfSample {
     pub fn is_dirac(&self) -> bool {
         self.lobe == LobeKind::Dirac
     }
+
+    /// Whether the lobe is too narrow for a density to be estimated from photons.
+    #[inline]
+    pub fn is_specular(&self) -> bool {
+        self.lobe != LobeKind::Broad
+    }
 }
 
 /// Segments that a path has more behind a surface: none where it goes straight on, as through thin glass. Mitsuba's
@@ -147,6 +153,17 @@ impl Bsdf {
     /// The lobes of one class alone. The three parts add up to the whole.
     pub fn part(&self, kind: LobeKind) -> Self {
         if self.has(kind) { *self } else { Self { lobes: Lobes::Black, ..*self } }
+    }
+
+    /// All lobes but the broad ones.
+    pub fn without_broad(&self) -> Self {
+        if self.has(LobeKind::Broad) { Self { lobes: Lobes::Black, ..*self } } else { *self }
+    }
+
+    /// Whether there are lobes that are too narrow for a density to be estimated from photons.
+    #[inline]
+    pub fn has_specular(&self) -> bool {
+        self.has(LobeKind::Dirac) || self.has(LobeKind::Sharp)
     }
 
     /// Whether [`eval`](Self::eval) may be above zero for directions on opposite sides.

@@ -243,7 +243,8 @@ impl Camera<'_> {
         walk.throughput = carried / q;
         if next.is_dirac() {
             walk.specular = true;
-            walk.trail.turn(1.0, 1.0);
+            walk.scattered -= u32::from(!bsdf.is_dirac());
+            walk.trail.turn_specular();
         } else {
             walk.trail.turn(next.pdf_solid_angle, bsdf.pdf(next.wi, wo));
         }
