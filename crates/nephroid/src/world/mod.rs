@@ -1,6 +1,7 @@
 //! The world: a checked scene with everything that rendering needs prepared. Nothing in it changes,
 //! and nothing that is done with it can fail.
 
+mod asking;
 mod build;
 mod cutout;
 #[cfg(test)]
@@ -26,6 +27,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::asking::Asked;
 use self::hues::Hues;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
@@ -53,14 +55,16 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
-    /// Whether any of them is a sky of which most directions bring some.
+    /// Those of them that rays which meet nothing see.
+    skies: Vec<u32>,
+    /// Whether any of these is one of which most directions bring some.
     wide_sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
-    /// Emitters as next event estimation asks them.
-    for_direct: Option<Discrete>,
+    /// How next event estimation asks emitters.
+    asked: Asked,
     camera: CameraRays,
     /// What paths are taken apart into; `None` if no glass does that.
     hues: Option<Hues>,
@@ -194,10 +198,6 @@ impl World {
         self.by_power.as_ref()
     }
 
-    pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
-        self.for_direct.as_ref()
-    }
-
     /// What photons are aimed at.
     pub(crate) fn aims(&self) -> &Aims {
         &self.aims
@@ -209,6 +209,11 @@ impl World {
 
     pub(crate) fn camera(&self) -> &CameraRays {
         &self.camera
+    }
+
+    /// The emitters that rays which meet nothing see, with their numbers.
+    pub(crate) fn skies(&self) -> impl Iterator<Item = (usize, &Emitter)> {
+        self.skies.iter().map(|&number| (number as usize, &self.emitters[number as usize]))
     }
 
     /// Whether light comes from a sky, in most directions.
@@ -295,7 +300,7 @@ impl World {
 
     /// Radiance that a ray which meets nothing sees, in W/(m²·sr).
     pub fn sky(&self, direction: Vec3) -> Rgb {
-        self.emitters.iter().map(|e| e.sky_radiance(&self.scene.textures, direction)).sum()
+        self.skies().map(|(_, e)| e.sky_radiance(&self.scene.textures, direction)).sum()
     }
 }
 
