@@ -2,12 +2,15 @@
 
 pub mod diagnostic;
 pub mod film_file;
+pub mod fit;
+pub mod gltf;
 pub mod image;
 mod integrator_request;
 mod log;
 pub mod mesh;
 pub mod mitsuba;
 pub mod photons;
+pub mod scene;
 mod scene_file;
 pub mod vfs;
 pub mod volume;
