@@ -67,7 +67,7 @@ fn sky_image(b: &mut Builder) -> LightKind {
         *pixel = Rgb::new(0.2, 0.3, 0.5) * (i * 7 % 11) as f32;
     }
     LightKind::Environment {
-        image: b.scene.textures.images.push(image),
+        image: b.scene.textures.images.push(image.into()),
         scale: 0.3,
         to_world: Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 70.0),
     }

@@ -7,7 +7,7 @@ use crate::handle::Handle;
 use crate::math::real::{atan2, sin_cos};
 use crate::math::{DMat3, Transform, Vec2, Vec3, warp};
 use crate::sampling::Discrete2d;
-use crate::texture::{Image, Textures, Wrap};
+use crate::texture::{Pixmap, Textures, Wrap};
 
 /// The same radiance from everywhere.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ impl ConstantSky {
 /// their middles.
 #[derive(Clone, Debug)]
 pub(crate) struct EnvironmentMap {
-    image: Handle<Image>,
+    image: Handle<Pixmap>,
     scale: f32,
     to_local: DMat3,
     to_world: DMat3,
@@ -53,7 +53,7 @@ impl EnvironmentMap {
     /// `None` if the image holds no light.
     pub fn new(
         textures: &Textures,
-        image: Handle<Image>,
+        image: Handle<Pixmap>,
         scale: f32,
         to_world: &Transform,
         target: Target,
@@ -154,7 +154,7 @@ impl EnvironmentMap {
 }
 
 /// A pixel of an image that wraps around in longitude.
-fn texel(image: &Image, x: i64, y: i64) -> Rgb {
+fn texel(image: &Pixmap, x: i64, y: i64) -> Rgb {
     image.pixel(Wrap::Repeat.index(x, image.width), Wrap::Clamp.index(y, image.height))
 }
 
@@ -165,13 +165,14 @@ fn incident(wi: Vec3, radiance: Rgb, pdf_solid_angle: f32) -> Incident {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::Image;
 
     #[test]
     fn rows_lie_from_pole_to_pole_and_columns_have_their_middles() {
         // Values 0 … 11: four columns, three rows.
         let pixels = (0..12).map(|i| Rgb::splat(i as f32)).collect();
         let mut textures = Textures::default();
-        let image = textures.images.push(Image { width: 4, height: 3, pixels });
+        let image = textures.images.push(Image { width: 4, height: 3, pixels }.into());
         let target = Target { center: Vec3::ZERO, radius: 1.0 };
         let map = EnvironmentMap::new(&textures, image, 1.0, &Transform::IDENTITY, target).unwrap();
         let value = |direction: Vec3| map.radiance(&textures, direction.normalize()).g;

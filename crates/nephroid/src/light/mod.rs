@@ -23,7 +23,7 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Transform, Vec3};
 use crate::medium::Medium;
-use crate::texture::{Image, Texture};
+use crate::texture::{Pixmap, Texture};
 
 /// A light without a surface, as a scene describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +74,7 @@ pub enum LightKind {
     /// Radiance from an equirectangular image around the scene.
     Environment {
         /// W/(m²·sr) before scaling. The first row is the zenith, local +y.
-        image: Handle<Image>,
+        image: Handle<Pixmap>,
         /// Multiplies the image.
         scale: f32,
         /// Turns it.
