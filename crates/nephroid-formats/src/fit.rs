@@ -3,12 +3,12 @@
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{FilmSettings, Filter};
-use nephroid::light::{EnvironmentMapping, Light, LightKind};
+use nephroid::light::{Light, LightKind};
 use nephroid::math::real::{cos_deg, sin_cos, sin_deg};
 use nephroid::math::{Bounds, DVec3, Transform, Vec2, Vec3};
 use nephroid::scene::Scene;
 use nephroid::shape::{Geometry, Shape};
-use nephroid::texture::Image;
+use nephroid::texture::{Image, Pixmap};
 
 use crate::diagnostic::{Diagnostic, Location};
 use crate::scene_file::{Origins, SceneFile};
@@ -153,12 +153,9 @@ pub fn is_dark(scene: &Scene) -> bool {
 }
 
 /// Puts an image all around a scene in place of the sky that it has, or takes that away.
-pub fn replace_sky(scene: &mut Scene, origins: &mut Origins, image: Option<Image>) {
+pub fn replace_sky(scene: &mut Scene, origins: &mut Origins, image: Option<Pixmap>) {
     let is_sky = |light: &Light| {
-        matches!(
-            light.kind,
-            LightKind::Constant { .. } | LightKind::Environment { .. } | LightKind::Sun { .. }
-        )
+        matches!(light.kind, LightKind::Constant { .. } | LightKind::Environment { .. })
     };
     let mut kept = scene.lights.iter().map(|light| !is_sky(light)).collect::<Vec<_>>().into_iter();
     origins.lights.retain(|_| kept.next().unwrap_or(true));
@@ -166,8 +163,7 @@ pub fn replace_sky(scene: &mut Scene, origins: &mut Origins, image: Option<Image
     if let Some(image) = image {
         origins.images.push(origins.scene.clone());
         let image = scene.textures.images.push(image);
-        let mapping = EnvironmentMapping::Equirectangular;
-        let kind = LightKind::Environment { image, mapping, scale: 1.0, to_world: Transform::IDENTITY };
+        let kind = LightKind::Environment { image, scale: 1.0, to_world: Transform::IDENTITY };
         origins.lights.push(origins.scene.clone());
         scene.lights.push(Light { name: "sky".to_owned(), kind, medium: None });
     }
@@ -184,7 +180,7 @@ impl SceneFile {
             self.fitted.camera = true;
         }
         if wanted.sky {
-            replace_sky(&mut self.scene, &mut self.origins, Some(plain_sky()));
+            replace_sky(&mut self.scene, &mut self.origins, Some(plain_sky().into()));
             self.fitted.sky = true;
         }
     }
@@ -244,8 +240,8 @@ mod tests {
         let mut scene = empty();
         let source = crate::diagnostic::Source::new("a", "");
         let mut origins = Origins::at(Location::new(&source, 0..0));
-        replace_sky(&mut scene, &mut origins, Some(plain_sky()));
-        replace_sky(&mut scene, &mut origins, Some(plain_sky()));
+        replace_sky(&mut scene, &mut origins, Some(plain_sky().into()));
+        replace_sky(&mut scene, &mut origins, Some(plain_sky().into()));
         assert_eq!((scene.lights.len(), origins.lights.len()), (1, 1));
         assert!(!is_dark(&scene));
         replace_sky(&mut scene, &mut origins, None);

@@ -106,10 +106,10 @@ impl<'d> Reader<'d> {
         if primitives.is_empty() {
             mesh.error("the mesh has no \"primitives\"");
         }
-        primitives.into_iter().filter_map(|part| Some((part, self.part(mesh, index, part)?))).collect()
+        primitives.into_iter().filter_map(|part| Some((part, self.shape(mesh, index, part)?))).collect()
     }
 
-    fn part(&mut self, mesh: Item<'d>, index: usize, part: Item<'d>) -> Option<Shape> {
+    fn shape(&mut self, mesh: Item<'d>, index: usize, part: Item<'d>) -> Option<Shape> {
         if !part.list("targets").is_empty() {
             self.once(mesh, "morph targets are not read: meshes are shown without them");
         }

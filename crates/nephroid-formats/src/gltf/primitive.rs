@@ -107,8 +107,8 @@ impl<'d> Reader<'d> {
             positions: positions.into_iter().map(Vec3::from).collect(),
             normals: normals.unwrap_or_default().into_iter().map(Vec3::from).collect(),
             uvs: uvs.unwrap_or_default().into_iter().map(Vec2::from).collect(),
+            colors: colors.unwrap_or_default(),
             triangles,
-            ..Mesh::default()
         };
         make_unit(&mut mesh);
         self.finished(primitive, mesh, mode)
@@ -198,8 +198,8 @@ fn compact(mesh: Mesh) -> Mesh {
         positions: chosen(&mesh.positions, &kept),
         normals: chosen(&mesh.normals, &kept),
         uvs: chosen(&mesh.uvs, &kept),
+        colors: chosen(&mesh.colors, &kept),
         triangles: mesh.triangles.iter().map(|t| t.map(|i| place[i as usize])).collect(),
-        ..mesh
     }
 }
 
