@@ -98,7 +98,7 @@ impl Way {
                 probe.light(LightPart::Emitted, light);
             }
             let Some(hit) = hit else { break };
-            let bsdf = world.bsdf_within(&hit, wo, &self.inside);
+            let bsdf = world.meet(&hit, wo, &mut self.inside, &mut self.throughput, sampler);
             let pass = |wi| (leave(&hit.point, wi), world.cross(self.inside, &hit, -wo, wi));
             if bsdf.is_null() {
                 (self.ray, self.inside) = pass(-wo);

@@ -129,7 +129,7 @@ fn radiance<P: Probe>(
             };
             book(&mut out, so_far.part(last), throughput * emitted * weight, probe);
         }
-        let bsdf = world.bsdf_within(&hit, wo, &inside);
+        let bsdf = world.meet(&hit, wo, &mut inside, &mut throughput, &mut sample.sampler);
         if bsdf.is_null() {
             inside = world.cross(inside, &hit, ray.direction, ray.direction);
             ray = leave(&hit.point, ray.direction);
@@ -155,7 +155,7 @@ fn radiance<P: Probe>(
             break;
         }
         throughput = carried / q;
-        last = if scattered.dirac {
+        last = if scattered.is_dirac() {
             Last::Certain
         } else {
             Last::Sampled { from: hit.point.position, pdf_solid_angle: scattered.pdf_solid_angle }

@@ -6,6 +6,7 @@ mod cutout;
 #[cfg(test)]
 mod cutout_tests;
 mod glow;
+mod hues;
 mod level;
 mod nest;
 #[cfg(test)]
@@ -25,11 +26,12 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::hues::Hues;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
-use crate::handle::{Arena, Handle};
+use crate::handle::Handle;
 use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
 use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, offset_origin};
@@ -51,8 +53,8 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
-    /// Whether any of them is a sky.
-    sky: bool,
+    /// Whether any of them is a sky of which most directions bring some.
+    wide_sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
@@ -60,6 +62,8 @@ pub struct World {
     /// Emitters as next event estimation asks them.
     for_direct: Option<Discrete>,
     camera: CameraRays,
+    /// What paths are taken apart into; `None` if no glass does that.
+    hues: Option<Hues>,
     bounds: Bounds,
     aims: Aims,
     /// What each emitter is in the scene.
@@ -90,6 +94,8 @@ struct Surfaced {
     boundary: Option<Boundary>,
     /// Its place among the shapes that have a priority; 0 if it has none.
     rank: Rank,
+    /// Whether it refracts each wavelength another way.
+    disperses: bool,
 }
 
 /// Where a ray meets a surface, as the search finds it: see [`World::nearest`].
@@ -205,9 +211,9 @@ impl World {
         &self.camera
     }
 
-    /// Whether light comes from a sky, in all directions.
-    pub(crate) fn has_sky(&self) -> bool {
-        self.sky
+    /// Whether light comes from a sky, in most directions.
+    pub(crate) fn has_wide_sky(&self) -> bool {
+        self.wide_sky
     }
 
     /// Whether any lamp is a Dirac one, which no path meets by chance.
@@ -297,14 +303,4 @@ impl World {
 #[inline]
 pub(crate) fn leave(point: &SurfacePoint, direction: Vec3) -> Ray {
     Ray::new(offset_origin(point.position, point.error, point.ng, direction), direction)
-}
-
-/// Whether either side of a material is a smooth conductor or dielectric.
-fn is_dirac(materials: &Arena<Material>, material: Handle<Material>) -> bool {
-    match materials[material] {
-        Material::Conductor { .. } | Material::Dielectric { .. } | Material::ThinDielectric { .. } => true,
-        Material::TwoSided { front, back } => is_dirac(materials, front) || is_dirac(materials, back),
-        Material::Mask { inside, .. } => is_dirac(materials, inside),
-        Material::Diffuse { .. } | Material::Phong { .. } | Material::Null => false,
-    }
 }

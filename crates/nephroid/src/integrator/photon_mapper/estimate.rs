@@ -213,7 +213,7 @@ impl<'a> PhotonMapper<'a> {
                 tools.probe.light(LightPart::Emitted, emitted);
             }
             let Some(hit) = hit else { return };
-            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
+            let bsdf = self.world.meet(&hit, wo, &mut way.inside, &mut throughput, &mut sample.sampler);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
                 continue;

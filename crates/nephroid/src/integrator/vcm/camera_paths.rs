@@ -241,7 +241,7 @@ impl Camera<'_> {
             return false;
         }
         walk.throughput = carried / q;
-        if next.dirac {
+        if next.is_dirac() {
             walk.specular = true;
             walk.trail.turn(1.0, 1.0);
         } else {
@@ -298,7 +298,7 @@ impl Estimator for Camera<'_> {
                 self.meet(&mut walk, radiance, lamp, &mut out, probe);
             }
             walk.length += hit.t;
-            let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
+            let bsdf = world.meet(&hit, wo, &mut walk.inside, &mut walk.throughput, &mut sample.sampler);
             if bsdf.is_null() {
                 let direction = walk.ray.direction;
                 walk.leave(world, &hit, direction);

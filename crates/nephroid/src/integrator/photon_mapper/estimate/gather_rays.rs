@@ -138,7 +138,7 @@ impl PhotonMapper<'_> {
             let Some(hit) = hit.filter(|_| self.fits(depth + 1)) else { break };
             distance += hit.t;
             let wo = -way.ray.direction;
-            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
+            let bsdf = self.world.meet(&hit, wo, &mut way.inside, &mut throughput, sampler);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
