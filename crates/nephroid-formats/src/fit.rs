@@ -3,7 +3,7 @@
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::{FilmSettings, Filter};
-use nephroid::light::{Light, LightKind};
+use nephroid::light::{EnvironmentMapping, Light, LightKind};
 use nephroid::math::real::{cos_deg, sin_cos, sin_deg};
 use nephroid::math::{Bounds, DVec3, Transform, Vec2, Vec3};
 use nephroid::scene::Scene;
@@ -155,7 +155,10 @@ pub fn is_dark(scene: &Scene) -> bool {
 /// Puts an image all around a scene in place of the sky that it has, or takes that away.
 pub fn replace_sky(scene: &mut Scene, origins: &mut Origins, image: Option<Pixmap>) {
     let is_sky = |light: &Light| {
-        matches!(light.kind, LightKind::Constant { .. } | LightKind::Environment { .. })
+        matches!(
+            light.kind,
+            LightKind::Constant { .. } | LightKind::Environment { .. } | LightKind::Sun { .. }
+        )
     };
     let mut kept = scene.lights.iter().map(|light| !is_sky(light)).collect::<Vec<_>>().into_iter();
     origins.lights.retain(|_| kept.next().unwrap_or(true));
@@ -163,7 +166,8 @@ pub fn replace_sky(scene: &mut Scene, origins: &mut Origins, image: Option<Pixma
     if let Some(image) = image {
         origins.images.push(origins.scene.clone());
         let image = scene.textures.images.push(image);
-        let kind = LightKind::Environment { image, scale: 1.0, to_world: Transform::IDENTITY };
+        let mapping = EnvironmentMapping::Equirectangular;
+        let kind = LightKind::Environment { image, mapping, scale: 1.0, to_world: Transform::IDENTITY };
         origins.lights.push(origins.scene.clone());
         scene.lights.push(Light { name: "sky".to_owned(), kind, medium: None });
     }

@@ -54,7 +54,7 @@ impl<'d> Reader<'d> {
             && let Some(normals) = self.bitmap(info, Purpose::Raw)
         {
             let scale = info.number("scale").unwrap_or(1.0) as f32;
-            inside = self.store_material(material, { let _ = (normals, scale); Material::TwoSided { front: inside, back: inside } });
+            inside = self.store_material(material, Material::NormalMap { normals, scale, inside });
         }
         if !surface.transmits {
             inside = self.store_material(material, Material::TwoSided { front: inside, back: inside });
