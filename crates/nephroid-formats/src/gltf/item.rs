@@ -27,9 +27,14 @@ impl<'d> Document<'d> {
 }
 
 impl<'d> Item<'d> {
-    /// Where it stands.
+    /// Where it stands: of objects and lists their opening brackets, for they may be as long as the document.
     pub(super) fn at(&self) -> Location {
-        Location::new(self.document.source, self.value.range.clone())
+        let range = self.value.range.clone();
+        let end = match self.value.kind {
+            Kind::List(_) | Kind::Object(_) => range.start + 1,
+            _ => range.end,
+        };
+        Location::new(self.document.source, range.start..end)
     }
 
     pub(super) fn log(&self) -> &'d Log {
