@@ -69,7 +69,8 @@ impl Viewpoint {
 }
 
 fn vector(text: &str) -> Result<DVec3, String> {
-    let mut numbers = text.split(',').map(|number| number.trim().parse().ok().filter(|v: &f64| v.is_finite()));
+    let mut numbers =
+        text.split(',').map(|number| number.trim().parse().ok().filter(|v: &f64| v.is_finite()));
     match (numbers.next(), numbers.next(), numbers.next(), numbers.next()) {
         (Some(Some(x)), Some(Some(y)), Some(Some(z)), None) => Ok(DVec3::new(x, y, z)),
         _ => Err(format!("\"{text}\" is not three numbers, as in 0,1.5,-2")),
@@ -111,7 +112,8 @@ impl ViewArgs {
 
 fn environment(path: &Path, files: &dyn Files) -> Result<nephroid::texture::Pixmap, Failure> {
     let name = path.display();
-    let bytes = files.read(path).map_err(|error| Failure::File(format!("{name}: cannot be read: {error}")))?;
+    let bytes =
+        files.read(path).map_err(|error| Failure::File(format!("{name}: cannot be read: {error}")))?;
     let file = read_texture(&bytes, false).map_err(|problem| Failure::File(format!("{name}: {problem}")))?;
     Ok(file.image)
 }
@@ -135,8 +137,16 @@ mod tests {
 
     #[test]
     fn bad_viewpoints_are_told() {
-        let bad =
-            ["", "0,0,1", "0,0,1;0,0,1", "0,0;0,0,1", "0,1,0;0,0,0", "a,0,1;0,0,0", "0,0,1;0,0,0;0,1,0;180", "1;2;3;4;5"];
+        let bad = [
+            "",
+            "0,0,1",
+            "0,0,1;0,0,1",
+            "0,0;0,0,1",
+            "0,1,0;0,0,0",
+            "a,0,1;0,0,0",
+            "0,0,1;0,0,0;0,1,0;180",
+            "1;2;3;4;5",
+        ];
         for text in bad {
             assert!(Viewpoint::parse(text).is_err(), "{text}");
         }

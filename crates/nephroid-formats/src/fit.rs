@@ -19,6 +19,9 @@ const FOV_DEG: f64 = 45.0;
 const AZIMUTH_DEG: f64 = 30.0;
 const ELEVATION_DEG: f64 = 20.0;
 
+/// The part of the shorter side of the picture that a model reaches across.
+const FILLED: f64 = 0.9;
+
 /// What a scene was given because its file has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fitted {
@@ -99,16 +102,21 @@ pub fn camera(bounds: &Bounds) -> Option<Camera> {
     }
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let center = (min + max) * 0.5;
-    let radius = (max - min).length() * 0.5;
-    // A single point is seen from somewhere, too.
-    let radius = if radius > 0.0 { radius } else { 1.0 };
     let level = cos_deg(ELEVATION_DEG);
-    let towards = DVec3::new(
-        level * sin_deg(AZIMUTH_DEG),
-        sin_deg(ELEVATION_DEG),
-        level * cos_deg(AZIMUTH_DEG),
-    );
-    let distance = radius / sin_deg(0.5 * FOV_DEG);
+    let towards =
+        DVec3::new(level * sin_deg(AZIMUTH_DEG), sin_deg(ELEVATION_DEG), level * cos_deg(AZIMUTH_DEG));
+    let turn = Transform::look_at(towards, DVec3::ZERO, DVec3::Y)?;
+    // Each corner must lie between the sides of the pyramid that is seen, wherever the picture is wider.
+    let slope = FILLED * sin_deg(0.5 * FOV_DEG) / cos_deg(0.5 * FOV_DEG);
+    let across = |p: DVec3, axis: DVec3| (p - center).dot(axis);
+    let (left, up) = (turn.0.matrix3.x_axis, turn.0.matrix3.y_axis);
+    let distance = corners(bounds)
+        .map(|p| p.as_dvec3())
+        .into_iter()
+        .map(|p| across(p, left).abs().max(across(p, up).abs()) / slope + across(p, towards))
+        .fold(0.0, f64::max);
+    // A single point is seen from somewhere, too.
+    let distance = if distance > 0.0 { distance } else { 1.0 };
     let to_world = Transform::look_at(center + towards * distance, center, DVec3::Y)?;
     Some(Camera { to_world, projection: perspective(FOV_DEG as f32), medium: None })
 }
@@ -127,8 +135,7 @@ pub fn film() -> FilmSettings {
 /// left of the front, so that shapes can be told. A white floor under it is about as bright as white on a display.
 pub fn plain_sky() -> Image {
     const SIZE: (u32, u32) = (64, 33);
-    let (zenith, horizon, ground) =
-        (Rgb::new(0.38, 0.48, 0.65), Rgb::splat(0.6), Rgb::new(0.21, 0.2, 0.19));
+    let (zenith, horizon, ground) = (Rgb::new(0.38, 0.48, 0.65), Rgb::splat(0.6), Rgb::new(0.21, 0.2, 0.19));
     let (lamp, warm) = (Vec3::new(-0.5, 0.75, 0.6).normalize(), Rgb::new(8.0, 7.6, 6.8));
     let mut image = Image::filled(SIZE.0, SIZE.1, Rgb::BLACK);
     for y in 0..SIZE.1 {
@@ -201,19 +208,18 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_fits_into_the_picture() {
+    fn a_box_fills_the_picture() {
         for scale in [1e-6f32, 1.0, 1e9] {
             let half = Vec3::new(1.0, 2.0, 3.0) * scale;
             let bounds = Bounds { min: half, max: half * 3.0 };
             let camera = camera(&bounds).expect("the box is not empty");
             let from_world = camera.to_world.inverse();
-            let (center, radius) = bounds.bounding_sphere();
-            let seen = from_world.point(center);
-            assert!(Vec2::new(seen.x, seen.y).length() < 1e-4 * radius, "{seen}");
-            // The cone of the field of view touches the sphere.
-            let sine = radius / seen.z;
-            assert!((f64::from(sine) - sin_deg(22.5)).abs() < 1e-4, "{sine}");
-            let eye = camera.to_world.point(Vec3::ZERO) - center;
+            let seen = corners(&bounds).map(|p| from_world.point(p));
+            let most = seen.iter().map(|p| p.x.abs().max(p.y.abs()) / p.z).fold(0.0, f32::max);
+            assert!(seen.iter().all(|p| p.z > 0.0), "{seen:?}");
+            // The side of the picture is at the tangent of half the field of view.
+            assert!((most / 0.414_213_57 - 0.9).abs() < 1e-4, "{most}");
+            let eye = camera.to_world.point(Vec3::ZERO) - bounds.center();
             assert!(eye.x > 0.0 && eye.y > 0.0 && eye.z > 0.0, "{eye}");
         }
         assert_eq!(camera(&Bounds::EMPTY), None);
@@ -223,16 +229,19 @@ mod tests {
     fn boxes_are_those_of_the_world() {
         let mut scene = empty();
         let white = scene.textures.constant(Rgb::WHITE);
-        let material =
-            scene.materials.push(nephroid::material::Material::Diffuse { reflectance: white });
+        let material = scene.materials.push(nephroid::material::Material::Diffuse { reflectance: white });
         let group = nephroid::shape::Group {
             name: "g".into(),
-            shapes: vec![Shape::new("c", Geometry::Cube, material), Shape::new("d", Geometry::Disk, material)],
+            shapes: vec![
+                Shape::new("c", Geometry::Cube, material),
+                Shape::new("d", Geometry::Disk, material),
+            ],
         };
         let sphere = Geometry::Sphere { center: Vec3::X, radius: 2.0 };
         scene.shapes.push(Shape::new("s", sphere, material));
         let group = scene.groups.push(group);
-        let to_world = Transform::scale(DVec3::new(1.0, -2.0, 3.0)).then(Transform::translate(DVec3::X * 9.0));
+        let to_world =
+            Transform::scale(DVec3::new(1.0, -2.0, 3.0)).then(Transform::translate(DVec3::X * 9.0));
         scene.instances.push(nephroid::shape::Instance { name: "i".into(), group, to_world });
         let ours = bounds(&scene);
         let world = World::new(scene).expect("the scene is sound").bounds();
@@ -261,8 +270,8 @@ mod tests {
             let theta = std::f32::consts::PI * y as f32 / (sky.height - 1) as f32;
             let (sine, cosine) = sin_cos(theta);
             let row: f64 = (0..sky.width).map(|x| f64::from(sky.pixel(x, y).g)).sum();
-            let cell = 2.0 * std::f64::consts::PI * std::f64::consts::PI
-                / f64::from(sky.width * (sky.height - 1));
+            let cell =
+                2.0 * std::f64::consts::PI * std::f64::consts::PI / f64::from(sky.width * (sky.height - 1));
             sum += row * f64::from(sine * cosine.max(0.0)) * cell;
         }
         let radiance = sum / std::f64::consts::PI;

@@ -132,7 +132,10 @@ mod tests {
         for (name, format) in named.into_iter().chain([("x.obj", Format::Obj), ("x.ply", Format::Ply)]) {
             assert_eq!(of(name), format, "{name}");
         }
-        assert_eq!(["a", "b", "c", "d.txt"].map(of), [Format::Mitsuba, Format::Gltf, Format::Gltf, Format::Ply]);
+        assert_eq!(
+            ["a", "b", "c", "d.txt"].map(of),
+            [Format::Mitsuba, Format::Gltf, Format::Gltf, Format::Ply]
+        );
         assert_eq!(of("not there"), Format::Mitsuba);
     }
 

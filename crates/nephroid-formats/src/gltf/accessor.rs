@@ -206,7 +206,8 @@ impl<'d> Buffers<'d> {
             return None;
         };
         if !accessor.has("bufferView") && count > MAX_ZEROS {
-            accessor.error(format!("{count} elements without a \"bufferView\", which is more than {MAX_ZEROS}"));
+            accessor
+                .error(format!("{count} elements without a \"bufferView\", which is more than {MAX_ZEROS}"));
             return None;
         }
         Some(count)

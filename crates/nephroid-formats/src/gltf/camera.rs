@@ -19,7 +19,10 @@ impl<'d> Reader<'d> {
         let more = holders.count();
         if more > 0 {
             let used = first.node.called("node", first.index);
-            self.once(first.node, &format!("the first of {} cameras takes the picture, \"{used}\"", more + 1));
+            self.once(
+                first.node,
+                &format!("the first of {} cameras takes the picture, \"{used}\"", more + 1),
+            );
         }
         let (_, camera) = first.node.refers("camera", "cameras")?;
         self.origins.camera = camera.at();

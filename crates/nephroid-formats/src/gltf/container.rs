@@ -66,8 +66,9 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
 }
 
 fn text(bytes: Vec<u8>) -> Result<String, String> {
-    let text = String::from_utf8(bytes)
-        .map_err(|error| format!("the document is not in UTF-8: see byte {}", error.utf8_error().valid_up_to()))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        format!("the document is not in UTF-8: see byte {}", error.utf8_error().valid_up_to())
+    })?;
     // Not allowed, and written by some all the same.
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }

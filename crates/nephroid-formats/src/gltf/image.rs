@@ -45,7 +45,8 @@ impl<'d> Reader<'d> {
 
     /// A texture whose image is in a format that only extensions know, or that has none.
     fn without_source(&self, texture: Item<'d>) {
-        let mut kinds = ["KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"].into_iter();
+        let mut kinds =
+            ["KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"].into_iter();
         match kinds.find(|kind| texture.extension(kind).is_some()) {
             Some(kind) => self.cannot_read(
                 texture,
@@ -76,7 +77,11 @@ impl<'d> Reader<'d> {
         };
         if ImageFormat::of(&bytes).is_none() {
             let message = format!("the image {}", crate::image::ImageProblem::unknown_format(&bytes));
-            self.cannot_read(image, message, "export the model again with PNG or JPEG textures, or try --lenient");
+            self.cannot_read(
+                image,
+                message,
+                "export the model again with PNG or JPEG textures, or try --lenient",
+            );
             return None;
         }
         match read_texture(&bytes, raw) {

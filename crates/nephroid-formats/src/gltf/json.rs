@@ -118,9 +118,7 @@ impl Parser<'_> {
 
     fn word(&mut self) -> Result<Kind, JsonError> {
         let rest = &self.text[self.at..];
-        for (word, kind) in
-            [("null", Kind::Null), ("true", Kind::Bool(true)), ("false", Kind::Bool(false))]
-        {
+        for (word, kind) in [("null", Kind::Null), ("true", Kind::Bool(true)), ("false", Kind::Bool(false))] {
             if rest.starts_with(word) {
                 self.at += word.len();
                 return Ok(kind);

@@ -22,6 +22,7 @@ impl<'d> Reader<'d> {
             .extension("KHR_lights_punctual")
             .map(|extension| extension.list("lights"))
             .unwrap_or_default();
+        let mut brightest = 0.0f64;
         for placed in nodes {
             let Some(extension) = placed.node.extension("KHR_lights_punctual") else { continue };
             let Some(index) = extension.whole("light") else {
@@ -33,10 +34,19 @@ impl<'d> Reader<'d> {
                 continue;
             };
             if let Some(kind) = kind(*light, placed) {
+                brightest = brightest.max(light.number("intensity").unwrap_or(1.0));
                 self.origins.lights.push(light.at());
                 let name = light.called("light", index);
                 self.lights.push(Light { name, kind, medium: None });
             }
+        }
+        // Many models are made for viewers that show a candela per square metre as white.
+        if !self.lights.is_empty() && brightest < LUMENS_PER_WATT {
+            let message = format!(
+                "the lights are weak, for candela and lux are divided by {LUMENS_PER_WATT} lumens to the watt: \
+                 --exposure 9.4 shows them as viewers do"
+            );
+            self.once(self.root, &message);
         }
     }
 }

@@ -65,10 +65,16 @@ impl<'d> Reader<'d> {
         if let Some(opacity) = opacity {
             inside = self.store_material(material, Material::Mask { opacity, inside });
             if emission.take().is_some() {
-                self.once(material, "what is partly transparent gives no light here: its emission is left out");
+                self.once(
+                    material,
+                    "what is partly transparent gives no light here: its emission is left out",
+                );
             }
             if medium.take().is_some() {
-                self.once(material, "what is partly transparent encloses nothing here: its volume is left out");
+                self.once(
+                    material,
+                    "what is partly transparent encloses nothing here: its volume is left out",
+                );
             }
         }
         Some(Look { material: inside, emission, inside: medium, uv_set })
@@ -77,11 +83,18 @@ impl<'d> Reader<'d> {
     /// The colour itself, whatever light falls on it: it is given off. Where that cannot be, it is a diffuse colour.
     fn unlit(&mut self, material: Item<'d>, with_colors: bool, uv_set: usize) -> Look {
         let color = self.base_color(material, with_colors);
-        if let Some(opacity) = self.opacity(material) {
-            self.once(material, "what is partly transparent gives no light here: unlit, it is diffuse");
+        let opacity = self.opacity(material);
+        if opacity.is_some() || with_colors {
+            self.once(
+                material,
+                "what is partly transparent or has the colours of vertices gives no light here: unlit, it is diffuse",
+            );
             let side = self.store_material(material, Material::Diffuse { reflectance: color });
             let inside = self.store_material(material, Material::TwoSided { front: side, back: side });
-            let material = self.store_material(material, Material::Mask { opacity, inside });
+            let material = match opacity {
+                Some(opacity) => self.store_material(material, Material::Mask { opacity, inside }),
+                None => inside,
+            };
             return Look { material, emission: None, inside: None, uv_set };
         }
         let reflectance = self.constant(material, Rgb::BLACK);

@@ -142,7 +142,10 @@ impl<'d> Reader<'d> {
                 .iter()
                 .filter_map(|variant| variant.get("name")?.as_text())
                 .collect();
-            let message = format!("of the variants {} the material that parts have without one is shown", names.join(", "));
+            let message = format!(
+                "of the variants {} the material that parts have without one is shown",
+                names.join(", ")
+            );
             self.once(part, &message);
         }
         part.refers("material", "materials")

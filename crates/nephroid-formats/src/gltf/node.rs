@@ -119,8 +119,11 @@ impl<'d> Buffers<'d> {
         let translations = self.attribute(attributes, "TRANSLATION", [0.0f32; 3])?;
         let rotations = self.attribute(attributes, "ROTATION", [0.0f32; 4])?;
         let scales = self.attribute(attributes, "SCALE", [0.0f32; 3])?;
-        let counts =
-            [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+        let counts = [
+            translations.as_ref().map(Vec::len),
+            rotations.as_ref().map(Vec::len),
+            scales.as_ref().map(Vec::len),
+        ];
         let mut known = counts.into_iter().flatten();
         let Some(count) = known.next() else {
             extension.error("the copies have neither \"TRANSLATION\" nor \"ROTATION\" nor \"SCALE\"");

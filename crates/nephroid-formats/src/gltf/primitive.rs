@@ -25,7 +25,12 @@ pub(super) struct Ingredients {
 
 impl<'d> Reader<'d> {
     /// The triangles of a primitive, with the texture coordinates of one set. `None` if it has none, or the log says why.
-    pub(super) fn mesh(&mut self, primitive: Item<'d>, uv_set: usize, with_colors: bool) -> Option<Handle<Mesh>> {
+    pub(super) fn mesh(
+        &mut self,
+        primitive: Item<'d>,
+        uv_set: usize,
+        with_colors: bool,
+    ) -> Option<Handle<Mesh>> {
         let mode = primitive.whole("mode").unwrap_or(4);
         if mode < 4 {
             self.once(primitive, "points and lines have no surface, and are left out");

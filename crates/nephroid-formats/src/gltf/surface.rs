@@ -33,8 +33,12 @@ impl<'d> Reader<'d> {
         self.coat_and_sheen(material, &mut out);
         self.anisotropy(material, &mut out);
         if let Some(extension) = material.extension("KHR_materials_transmission") {
-            out.transmission =
-                self.product(extension, unit(extension, "transmissionFactor", 0.0), "transmissionTexture", Part::Red);
+            out.transmission = self.product(
+                extension,
+                unit(extension, "transmissionFactor", 0.0),
+                "transmissionTexture",
+                Part::Red,
+            );
         }
         let transmits = self.textures.brightest(out.transmission) > 0.0;
         let mut medium = None;
@@ -89,8 +93,12 @@ impl<'d> Reader<'d> {
             }
         }
         if let Some(extension) = material.extension("KHR_materials_specular") {
-            out.specular =
-                self.product(extension, unit(extension, "specularFactor", 1.0), "specularTexture", Part::Alpha);
+            out.specular = self.product(
+                extension,
+                unit(extension, "specularFactor", 1.0),
+                "specularTexture",
+                Part::Alpha,
+            );
             let color = factors(extension, "specularColorFactor", [1.0; 3]);
             out.specular_color = self.product(extension, color, "specularColorTexture", Part::Colors);
         }
@@ -124,7 +132,10 @@ impl<'d> Reader<'d> {
             out.clearcoat_roughness =
                 self.product(extension, roughness, "clearcoatRoughnessTexture", Part::Green);
             if extension.has("clearcoatNormalTexture") {
-                self.once(extension, "a coat has the normals of what is below: \"clearcoatNormalTexture\" is not read");
+                self.once(
+                    extension,
+                    "a coat has the normals of what is below: \"clearcoatNormalTexture\" is not read",
+                );
             }
         }
         if let Some(extension) = material.extension("KHR_materials_sheen") {

@@ -2,8 +2,8 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::math::{Affine2, Vec2};
 use nephroid::math::real::sin_cos;
+use nephroid::math::{Affine2, Vec2};
 use nephroid::texture::{Bitmap, BitmapFilter, Texture, Wrap};
 
 use super::image::Purpose;

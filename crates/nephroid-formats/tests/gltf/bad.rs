@@ -64,7 +64,8 @@ fn accessors_stay_in_their_views() {
     change("bufferViews", "byteStride", json!(4)).fails_with("cannot follow one another after 4");
     change("bufferViews", "buffer", json!(1)).fails_with("there are 1 buffers");
     let mut zeros = Model::square();
-    zeros.document["accessors"][0] = json!({ "componentType": 5126, "count": 4_000_000_000u64, "type": "VEC3" });
+    zeros.document["accessors"][0] =
+        json!({ "componentType": 5126, "count": 4_000_000_000u64, "type": "VEC3" });
     zeros.fails_with("elements without a \"bufferView\"");
 }
 
@@ -140,9 +141,8 @@ fn nodes_form_a_tree() {
 fn a_chain_of_a_hundred_thousand_nodes_is_read() {
     let mut model = Model::square();
     let count = 100_000;
-    let chain = (0..count).map(|i| {
-        if i + 1 < count { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) }
-    });
+    let chain =
+        (0..count).map(|i| if i + 1 < count { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) });
     model.document["nodes"] = chain.collect();
     assert_eq!(model.good().0.scene.shapes.len(), 1);
 }
@@ -153,7 +153,8 @@ fn a_view_of_nothing_and_lights_of_nothing_are_told() {
     model.document["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 4.0 } }]);
     model.node(json!({ "camera": 0 }));
     model.fails_with("\"yfov\" between 0 and π");
-    model.document["cameras"] = json!([{ "type": "orthographic", "orthographic": { "xmag": 0.0, "ymag": 1.0 } }]);
+    model.document["cameras"] =
+        json!([{ "type": "orthographic", "orthographic": { "xmag": 0.0, "ymag": 1.0 } }]);
     model.fails_with("not zero");
     model.document["cameras"] = json!([{ "type": "fisheye" }]);
     model.fails_with("\"type\" of a camera");

@@ -100,7 +100,8 @@ impl Model {
 
     /// Adds an accessor of a view.
     pub fn accessor(&mut self, view: usize, component: u32, count: usize, kind: &str) -> usize {
-        let accessor = json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
+        let accessor =
+            json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
         self.push("accessors", accessor)
     }
 

@@ -42,8 +42,23 @@ enum Damage {
 
 fn damage() -> impl Strategy<Value = Damage> {
     let words = vec![
-        "-1", "0", "99999999", "1e300", "null", "\"", "{", "]", ",", "0.5", "true", "[]", "{}", "\\u0000", "é",
-        "\"extensions\":{},", "\"sparse\":{\"count\":1},",
+        "-1",
+        "0",
+        "99999999",
+        "1e300",
+        "null",
+        "\"",
+        "{",
+        "]",
+        ",",
+        "0.5",
+        "true",
+        "[]",
+        "{}",
+        "\\u0000",
+        "é",
+        "\"extensions\":{},",
+        "\"sparse\":{\"count\":1},",
     ];
     prop_oneof![
         (0.0..1.0, any::<u8>()).prop_map(|(at, byte)| Damage::Overwrite(at, byte)),
