@@ -11,8 +11,9 @@ use crate::layers::{self, LayerFlag};
 use crate::method::Integrator;
 use crate::parameters::PhotonFlags;
 use crate::session_args::{MergeArgs, ResumeArgs, SessionArgs, WatchArgs};
+use crate::view::ViewArgs;
 
-/// Photon mapping: renders scenes in the XML of Mitsuba 3.
+/// Photon mapping: renders scenes in the XML of Mitsuba 3, models in glTF 2.0, and meshes (OBJ, PLY).
 ///
 /// Without arguments, renders the built-in scene "cornell" to nephroid.exr and nephroid.png.
 #[derive(Debug, Parser)]
@@ -74,6 +75,8 @@ pub struct SceneArgs {
     /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each
     #[arg(long)]
     pub lenient: bool,
+    #[command(flatten)]
+    pub view: ViewArgs,
 }
 
 /// `nephroid render`.

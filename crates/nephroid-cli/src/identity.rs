@@ -85,6 +85,9 @@ pub fn of_render(
         add(&format!("-D {name}"), value.to_owned());
     }
     add("--lenient", reading.lenient.to_string());
+    for (name, value) in reading.view.identity() {
+        add(name, value);
+    }
     add("resolution", format!("{}x{}", film.width, film.height));
     if let Some(crop) = film.crop {
         add("crop", format!("{}x{} at {},{}", crop.width, crop.height, crop.x, crop.y));

@@ -152,6 +152,9 @@ impl Job {
             }),
             (_, given) => given,
         };
+        if args.reading.view.envmap.as_deref() != Some(Path::new("none")) {
+            args.reading.view.envmap = args.reading.view.envmap.map(|image| from_here(&image));
+        }
         args.denoise.oidn_library = args.denoise.oidn_library.map(|library| from_here(&library));
         args.watch = Default::default();
         Ok(args)

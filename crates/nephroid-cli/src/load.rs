@@ -8,8 +8,9 @@ use nephroid::scene::{Remark, Scene, SceneError, Subject};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
-use nephroid_formats::mitsuba::{read_scene, read_scene_str};
-use nephroid_formats::vfs::DiskFiles;
+use nephroid_formats::mitsuba::read_scene_str;
+use nephroid_formats::scene::read_scene;
+use nephroid_formats::vfs::{DiskFiles, Files};
 use nephroid_formats::{Options, Origins, SceneFile};
 
 use crate::args::SceneArgs;
@@ -47,15 +48,25 @@ pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Ident
     if let Some(builtin) = builtin_of(scene) {
         let files = RecordingFiles::new(builtin);
         let name = format!("{}.xml", builtin.name);
-        let file = read_scene_str(&name, builtin.text, &files, &options).map_err(Failure::Scene)?;
+        let mut file = read_scene_str(&name, builtin.text, &files, &options).map_err(Failure::Scene)?;
+        view(&mut file, args, &files)?;
         let mut identity = vec![("scene".to_owned(), fingerprint(builtin.text.as_bytes()))];
         identity.extend(files.fingerprints(Path::new(&name)));
         return Ok((file, identity));
     }
     check_readable(scene)?;
     let files = RecordingFiles::new(&DiskFiles);
-    let file = read_scene(scene, &files, &options).map_err(Failure::Scene)?;
+    let mut file = read_scene(scene, &files, &options).map_err(Failure::Scene)?;
+    view(&mut file, args, &files)?;
     Ok((file, files.fingerprints(scene)))
+}
+
+/// Puts in the camera and the sky that flags ask for, and tells of those that a model was given.
+fn view(file: &mut SceneFile, args: &SceneArgs, files: &dyn Files) -> Result<(), Failure> {
+    args.view.apply(file, files)?;
+    let remark = file.fitted.remark(&file.scene, &file.origins.scene);
+    file.warnings.extend(remark);
+    Ok(())
 }
 
 /// Tells a file that cannot be read, which is no fault of the scene.

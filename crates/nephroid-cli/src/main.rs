@@ -43,6 +43,7 @@ mod study_watch;
 mod tev;
 mod tonemap;
 mod values;
+mod view;
 
 use std::process::ExitCode;
 

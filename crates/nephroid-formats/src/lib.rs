@@ -2,6 +2,8 @@
 
 pub mod diagnostic;
 pub mod film_file;
+pub mod fit;
+pub mod gltf;
 pub mod ies;
 pub mod image;
 mod integrator_request;
@@ -9,6 +11,7 @@ mod log;
 pub mod mesh;
 pub mod mitsuba;
 pub mod photons;
+pub mod scene;
 mod scene_file;
 pub mod vfs;
 pub mod volume;

@@ -3,6 +3,7 @@
 use nephroid::scene::Scene;
 
 use crate::diagnostic::{Diagnostic, Location};
+use crate::fit::Fitted;
 use crate::integrator_request::IntegratorRequest;
 
 /// How to read a scene.
@@ -28,6 +29,8 @@ pub struct SceneFile {
     pub warnings: Vec<Diagnostic>,
     /// Where the parts of the scene stand in the file.
     pub origins: Origins,
+    /// What it was given beyond its file.
+    pub fitted: Fitted,
 }
 
 /// Where the parts of a scene stand in its file, by their index in the scene.

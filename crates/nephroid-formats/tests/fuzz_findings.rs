@@ -55,3 +55,15 @@ fn seeds_of_scenes_can_be_read() {
         nephroid::world::World::new(scene).unwrap_or_else(|errors| panic!("{name}: {errors}"));
     }
 }
+
+#[test]
+fn seeds_of_models_can_be_read() {
+    let pixels = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds/two_pixels.png"));
+    let files = MemoryFiles::default().with("i.png", pixels.expect("a seed can be read"));
+    for (name, bytes) in seeds("gltf") {
+        let files = files.clone().with("s.gltf", bytes);
+        let read = nephroid_formats::gltf::read_scene(Path::new("s.gltf"), &files, &Options::default());
+        let scene = read.unwrap_or_else(|errors| panic!("{name}: {errors}")).scene;
+        nephroid::world::World::new(scene).unwrap_or_else(|errors| panic!("{name}: {errors}"));
+    }
+}

@@ -17,18 +17,35 @@ pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Pixmap, Im
     let reader = Cursor::new(bytes);
     let pixels = match format {
         // Deflate saves up to 1032 : 1.
-        ImageFormat::Png => pixels(PngDecoder::new(reader).map_err(problem)?, format, 1032, bytes)?,
+        ImageFormat::Png => {
+            let decoder = PngDecoder::new(reader).map_err(problem)?;
+            pixels(decoder, format, bits_of_png(bytes), 1032, bytes)?
+        }
         ImageFormat::Jpeg => {
             check_end_of_jpeg(bytes)?;
             // A progressive file may spend a single bit on a block of 8×8 pixels.
-            pixels(JpegDecoder::new(reader).map_err(problem)?, format, 64 * 8 * 3, bytes)?
+            let decoder = JpegDecoder::new(reader).map_err(problem)?;
+            let bits = bits_of(&decoder);
+            pixels(decoder, format, bits, 64 * 8 * 3, bytes)?
         }
         // Two bytes may stand for 128 pixels of 32 bits.
-        ImageFormat::Tga => pixels(TgaDecoder::new(reader).map_err(problem)?, format, 256, bytes)?,
+        ImageFormat::Tga => {
+            let decoder = TgaDecoder::new(reader).map_err(problem)?;
+            let bits = bits_of(&decoder);
+            pixels(decoder, format, bits, 256, bytes)?
+        }
         // Two bytes may stand for 255 pixels of 24 bits.
-        ImageFormat::Bmp => pixels(BmpDecoder::new(reader).map_err(problem)?, format, 384, bytes)?,
+        ImageFormat::Bmp => {
+            let decoder = BmpDecoder::new(reader).map_err(problem)?;
+            let bits = bits_of(&decoder);
+            pixels(decoder, format, bits, 384, bytes)?
+        }
         // A run of a row of any length takes some 16 bytes, and a pixel 96 bits.
-        _ => pixels(HdrDecoder::new_nonstrict(reader).map_err(problem)?, format, 4096 * 12, bytes)?,
+        _ => {
+            let decoder = HdrDecoder::new_nonstrict(reader).map_err(problem)?;
+            let bits = bits_of(&decoder);
+            pixels(decoder, format, bits, 4096 * 12, bytes)?
+        }
     };
     Ok(kept(pixels, raw))
 }
@@ -36,15 +53,32 @@ pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Pixmap, Im
 fn pixels(
     decoder: impl ImageDecoder,
     format: ImageFormat,
+    bits: u64,
     best_ratio: u64,
     bytes: &[u8],
 ) -> Result<DynamicImage, ImageProblem> {
     let (width, height) = decoder.dimensions();
     let size = (u64::from(width), u64::from(height));
     check_size(size.0, size.1)?;
-    let bits = u64::from(decoder.original_color_type().bits_per_pixel());
     check_held(size, bits, best_ratio, bytes.len())?;
     DynamicImage::from_decoder(decoder).map_err(|error| problem(format, error))
+}
+
+fn bits_of(decoder: &impl ImageDecoder) -> u64 {
+    u64::from(decoder.original_color_type().bits_per_pixel())
+}
+
+/// Bits that a pixel takes before it is compressed, from the header (PNG, 11.2.2): the decoder tells those of the colours
+/// in a palette, which may be 24 where the file has one. The header is known to be there.
+fn bits_of_png(bytes: &[u8]) -> u64 {
+    let (depth, kind) = (bytes.get(24).copied().unwrap_or(0), bytes.get(25).copied().unwrap_or(0));
+    let channels = match kind {
+        2 => 3,
+        4 => 2,
+        6 => 4,
+        _ => 1,
+    };
+    u64::from(depth) * channels
 }
 
 /// A JPEG file ends with the marker FF D9. The decoder fills up a picture that ends early without

@@ -60,7 +60,7 @@ impl MeshError {
 }
 
 /// Leaves out triangles without area; an error if no others are left.
-fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
+pub(crate) fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
     let all = mesh.triangles.len();
     if all == 0 {
         return Err(MeshError::new("the file has no faces"));

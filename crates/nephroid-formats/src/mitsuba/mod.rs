@@ -37,6 +37,7 @@ use self::document::{Document, Element};
 use self::reader::Reader;
 use self::value::Ids;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::fit::Fitted;
 use crate::log::Log;
 use crate::scene_file::{Options, Origins, SceneFile};
 use crate::vfs::Files;
@@ -103,7 +104,8 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let (camera, film) = (sensor.camera, sensor.film);
     let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights, media };
     let sample_count = sensor.sample_count;
-    Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins })
+    let fitted = Fitted::default();
+    Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins, fitted })
 }
 
 /// Every `id` of the scene and the other names that aliases give them.
