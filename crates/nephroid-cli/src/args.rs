@@ -37,6 +37,8 @@ pub enum Command {
     Tonemap(TonemapArgs),
     /// Measure how far a picture is from its reference
     Compare(CompareArgs),
+    /// Write a scene as a file of Mitsuba 3
+    Convert(ConvertArgs),
     /// Tell what a scene contains
     Info(InfoArgs),
     /// Draw the photons of a scene, or write each of them to a table or a cloud of points
@@ -74,6 +76,9 @@ pub struct SceneArgs {
     /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each
     #[arg(long)]
     pub lenient: bool,
+    /// Read no file outside of this folder, wherever links lead [default: the scene's own folder]
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
+    pub sandbox: Option<Option<PathBuf>>,
 }
 
 /// `nephroid render`.
@@ -207,6 +212,21 @@ pub struct CompareArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// `nephroid convert`.
+#[derive(Args, Debug)]
+pub struct ConvertArgs {
+    /// A scene file, or the name of a built-in scene
+    pub scene: PathBuf,
+    /// The file to write, .xml; what it needs goes into the folder OUT_files beside it
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// Write over files that exist
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// `nephroid info`.
