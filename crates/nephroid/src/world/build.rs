@@ -296,11 +296,17 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
             let sky = ConstantSky { radiance, target };
             (EmitterKind::Constant(sky), sky.power())
         }
-        LightKind::Environment { image, scale, to_world } => {
+        LightKind::Environment { image, scale, to_world, mapping: _ } => {
             let map = EnvironmentMap::new(&scene.textures, *image, *scale, to_world, target)?;
             let power = map.power();
             (EmitterKind::Environment(map), power)
         }
+        &LightKind::Sun { direction, irradiance, .. } => (
+            EmitterKind::Directional { direction: -direction.normalize(), irradiance, target },
+            irradiance * target.silhouette(),
+        ),
+        // The checks let none through.
+        LightKind::Goniometric { .. } | LightKind::Projector { .. } => return None,
     };
     Some(Emitter { name: light.name.clone(), kind, power })
 }
