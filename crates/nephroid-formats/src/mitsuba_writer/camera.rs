@@ -5,6 +5,7 @@ use nephroid::film::Filter;
 use nephroid::math::Vec2;
 
 use super::Writer;
+use super::lights::axis_name;
 use crate::integrator_request::{IntegratorRequest, ParameterValue};
 
 /// Integrators that Mitsuba 3 has, too.
@@ -73,15 +74,8 @@ impl Writer<'_, '_> {
     }
 
     fn angle(&mut self, fov_deg: f32, axis: FovAxis, offset: Vec2) {
-        let axis = match axis {
-            FovAxis::X => "x",
-            FovAxis::Y => "y",
-            FovAxis::Diagonal => "diagonal",
-            FovAxis::Smaller => "smaller",
-            FovAxis::Larger => "larger",
-        };
         self.xml.float("fov", fov_deg);
-        self.xml.string("fov_axis", axis);
+        self.xml.string("fov_axis", axis_name(axis));
         if offset != Vec2::ZERO {
             self.xml.float("principal_point_offset_x", offset.x);
             self.xml.float("principal_point_offset_y", offset.y);
