@@ -6,6 +6,9 @@ mod area;
 mod emitter;
 mod environment;
 mod glow;
+mod goniometric;
+mod projector;
+mod sphere_image;
 mod spot;
 
 #[cfg(test)]
@@ -15,8 +18,10 @@ pub(crate) use aim::{Ball, MAX_BALLS, Targets};
 pub(crate) use area::AreaEmitter;
 pub use emitter::{Emission, Incident, Source, SphereSampling};
 pub(crate) use emitter::{EmissionNumbers, Emitter, EmitterKind, Lookup, Target};
-pub(crate) use environment::{ConstantSky, EnvironmentMap};
+pub(crate) use environment::{ConstantSky, EnvironmentMap, Sun};
 pub(crate) use glow::{Glow, Lattice};
+pub(crate) use goniometric::Goniometric;
+pub(crate) use projector::Projector;
 pub(crate) use spot::Spot;
 
 use crate::camera::FovAxis;

@@ -10,15 +10,6 @@ use crate::texture::Image;
 pub(super) fn check_lights(scene: &Scene, problems: &mut Problems) {
     for (i, light) in scene.lights.iter().enumerate() {
         let subject = Subject::Light(i);
-        let unknown = match &light.kind {
-            LightKind::Environment { mapping, .. } => *mapping == EnvironmentMapping::EqualArea,
-            LightKind::Sun { angular_radius_deg, .. } => *angular_radius_deg > 0.0,
-            LightKind::Goniometric { .. } | LightKind::Projector { .. } => true,
-            _ => false,
-        };
-        if unknown {
-            problems.add(subject, "lights of this kind are not rendered yet");
-        }
         match &light.kind {
             LightKind::Point { position, intensity } => {
                 finite(position.is_finite(), "position", subject, problems);
@@ -164,14 +155,10 @@ mod tests {
         assert_eq!(
             found,
             [
-                "light 0: lights of this kind are not rendered yet",
                 "light 0: its image of 2 by 1 pixels is no square, as the equal-area mapping has it",
-                "light 1: lights of this kind are not rendered yet",
                 "light 1: its direction must have a length",
                 "light 1: an angular radius of 90: write one from 0 to below 90 degrees",
-                "light 2: lights of this kind are not rendered yet",
                 "light 2: a intensity of (-1, -1, -1): every channel must be finite and not negative",
-                "light 3: lights of this kind are not rendered yet",
                 "light 3: a field of view of 180 degrees: write one between 0 and 180",
             ]
         );
