@@ -51,6 +51,7 @@ impl World {
                     flipped: s.flip_normals,
                     invisible,
                     masked: inside != s.material && !invisible,
+                    colored: matches!(s.geometry, Geometry::Mesh(mesh) if !scene.meshes[mesh].colors.is_empty()),
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
                     rank: 0,
@@ -236,6 +237,7 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
         positions: mesh.positions.iter().map(|&p| to_world.point(p)).collect(),
         normals: mesh.normals.iter().map(|&n| to_world.normal(n)).collect(),
         uvs: mesh.uvs.clone(),
+        colors: mesh.colors.clone(),
         triangles: mesh
             .triangles
             .iter()
