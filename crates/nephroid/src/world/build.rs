@@ -16,7 +16,7 @@ use crate::medium::{Matter, Media};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
 use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
-use crate::texture::Image;
+use crate::texture::Pixmap;
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -319,7 +319,7 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
             (EmitterKind::Goniometric(Box::new(lamp)), power)
         }
         &LightKind::Projector { ref to_world, image, scale, unit, fov_deg, fov_axis } => {
-            let Image { width, height, .. } = scene.textures.images[image];
+            let Pixmap { width, height, .. } = scene.textures.images[image];
             let half = fov_axis.half_size(fov_deg, width as f32, height as f32);
             let lamp = Projector::new(&scene.textures, to_world, image, scale, unit, half)?;
             let power = lamp.power();
