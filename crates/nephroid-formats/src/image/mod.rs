@@ -27,6 +27,7 @@ pub use error::{ImageError, ImageProblem};
 pub use limits::{MAX_PIXELS, MAX_SIDE};
 pub use output::check_writable;
 pub(crate) use output::{stream_atomically, write_atomically};
+pub(crate) use write_png::encode_bytes;
 pub use write_exr::{Layer, LayerData, encode_exr, write_exr};
 pub use write_png::{encode_png, write_png};
 

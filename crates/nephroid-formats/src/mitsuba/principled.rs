@@ -81,7 +81,8 @@ impl<'t> Reader<'t> {
         sheet.transmission = transmission;
         sheet.sheen_color = self.share(plugin, "sheen", 0.0);
         sheet.ior = self.eta(plugin);
-        let passed = 0.5 * self.textures.mean(self.share_of(plugin)).mean();
+        let diff_trans = self.share_of(plugin);
+        let passed = 0.5 * self.textures.mean(diff_trans).mean();
         let sheet = self.store(plugin, Material::MetallicRoughness(Box::new(sheet)));
         let clear = self.textures.list[transmission] != Texture::Constant(Rgb::BLACK);
         let sheet = if clear {

@@ -59,7 +59,7 @@ impl Writer<'_, '_> {
             }
             LightKind::Environment { image, mapping: EnvironmentMapping::Equirectangular, scale, to_world } => {
                 self.xml.plugin("emitter", "envmap", id);
-                self.xml.string("filename", &self.images[image.index()]);
+                self.xml.string("filename", &self.images[image.index()].name);
                 self.xml.float("scale", *scale);
                 self.xml.transform("to_world", to_world);
             }
@@ -87,7 +87,7 @@ impl Writer<'_, '_> {
                 self.xml.string("fov_axis", axis_name(*fov_axis));
                 self.xml.float("scale", scale.mean() * FRAC_1_PI);
                 self.xml.open("texture", &[("type", "bitmap"), ("name", "irradiance")]);
-                self.xml.string("filename", &self.images[image.index()]);
+                self.xml.string("filename", &self.images[image.index()].name);
                 self.xml.close();
             }
         }

@@ -50,13 +50,72 @@ impl Writer<'_, '_> {
                 self.scalar("opacity", opacity);
                 self.inside(inside);
             }
+            Material::RoughConductor { metal, specular_reflectance, roughness } => {
+                self.xml.plugin("bsdf", "roughconductor", id);
+                self.metal(metal);
+                self.paint("specular_reflectance", specular_reflectance, Range::Unit);
+                self.roughness(&roughness);
+            }
+            Material::RoughDielectric {
+                int_ior,
+                ext_ior,
+                specular_reflectance,
+                specular_transmittance,
+                roughness,
+            } => {
+                self.xml.plugin("bsdf", "roughdielectric", id);
+                self.glass(int_ior, ext_ior, specular_reflectance, specular_transmittance);
+                self.roughness(&roughness);
+            }
+            Material::Plastic {
+                int_ior,
+                ext_ior,
+                diffuse_reflectance,
+                specular_reflectance,
+                nonlinear,
+                roughness,
+            } => {
+                let kind = if roughness.is_some() { "roughplastic" } else { "plastic" };
+                self.xml.plugin("bsdf", kind, id);
+                self.xml.float("int_ior", int_ior);
+                self.xml.float("ext_ior", ext_ior);
+                self.paint("diffuse_reflectance", diffuse_reflectance, Range::Unit);
+                self.paint("specular_reflectance", specular_reflectance, Range::Unit);
+                self.xml.boolean("nonlinear", nonlinear);
+                if let Some(roughness) = roughness {
+                    self.plain_roughness(id, &roughness);
+                }
+            }
+            Material::CoatedConductor { metal, specular_reflectance, roughness, .. } => {
+                self.warn("Mitsuba 3 has no coats: coated metals are bare");
+                let kind = if roughness.is_some() { "roughconductor" } else { "conductor" };
+                self.xml.plugin("bsdf", kind, id);
+                self.metal(metal);
+                self.paint("specular_reflectance", specular_reflectance, Range::Unit);
+                if let Some(roughness) = roughness {
+                    self.roughness(&roughness);
+                }
+            }
+            Material::DiffuseTransmission { reflectance, transmittance } => {
+                self.diffuse_transmission(id, reflectance, transmittance);
+            }
+            Material::Principled(ref principled) => self.principled(id, principled),
+            Material::MetallicRoughness(ref gltf) => self.metallic_roughness(id, gltf),
+            Material::Blend { weight, first, second } => {
+                self.xml.plugin("bsdf", "blendbsdf", id);
+                self.scalar("weight", weight);
+                self.inside(first);
+                self.inside(second);
+            }
+            Material::NormalMap { normals, scale, inside } => self.tilted(id, normals, scale, inside, false),
+            Material::BumpMap { heights, scale, inside } => self.tilted(id, heights, scale, inside, true),
             Material::Null => self.xml.plugin("bsdf", "null", id),
         }
         self.xml.close();
     }
 
-    fn inside(&mut self, material: Handle<Material>) {
-        self.xml.reference("", &self::id(material));
+    pub(super) fn inside(&mut self, material: Handle<Material>) {
+        self.xml.reference("", &id(material));
     }
 
     pub(super) fn metal(&mut self, metal: Metal) {

@@ -9,6 +9,7 @@ mod lights;
 mod materials;
 mod media;
 mod ply;
+mod rough;
 mod shapes;
 mod textures;
 mod vol;
@@ -107,7 +108,7 @@ struct Writer<'a, 's> {
     /// The id of each medium.
     media: Vec<String>,
     /// The file of each image.
-    images: Vec<String>,
+    images: Vec<textures::ImageName>,
     /// The file of each mesh that was written.
     meshes: BTreeMap<usize, String>,
     /// The id of each group.

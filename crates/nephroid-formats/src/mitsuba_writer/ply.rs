@@ -6,6 +6,7 @@ use nephroid::shape::Mesh;
 /// bits of normals, which are brought to unit length anew. One without normals must be read with flat faces.
 pub(super) fn encode(mesh: &Mesh) -> Vec<u8> {
     let (normals, uvs) = (!mesh.normals.is_empty(), !mesh.uvs.is_empty());
+    let colors = !mesh.colors.is_empty();
     let mut header = String::from("ply\nformat binary_little_endian 1.0\n");
     let mut element = |name: &str, count: usize, properties: &[&str]| {
         header.push_str(&format!("element {name} {count}\n"));
@@ -20,6 +21,9 @@ pub(super) fn encode(mesh: &Mesh) -> Vec<u8> {
     if uvs {
         of_vertex.extend(["float u", "float v"]);
     }
+    if colors {
+        of_vertex.extend(["float r", "float g", "float b"]);
+    }
     element("vertex", mesh.positions.len(), &of_vertex);
     element("face", mesh.triangles.len(), &["list uchar int vertex_indices"]);
     header.push_str("end_header\n");
@@ -32,6 +36,9 @@ pub(super) fn encode(mesh: &Mesh) -> Vec<u8> {
         }
         if uvs {
             floats(&mesh.uvs[i].to_array());
+        }
+        if colors {
+            floats(&mesh.colors[i].to_array());
         }
     }
     for triangle in &mesh.triangles {

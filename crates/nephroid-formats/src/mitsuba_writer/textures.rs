@@ -2,11 +2,15 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::math::{Affine2, DAffine3, DMat3, DVec3};
-use nephroid::texture::{BitmapFilter, Texture, Wrap};
+use nephroid::math::{Affine2, DAffine3, DMat3, DVec3, Vec2};
+use nephroid::texture::{Bitmap, BitmapFilter, Image, Pixmap, Texture, Wrap};
 
-use super::{Writer, image};
+use super::Writer;
+use super::image::{self, Encoded};
 use crate::image::ImageError;
+
+/// Pixels along the sides of an image that stands for textures without images.
+const BAKED_SIDE: u32 = 256;
 
 /// What values of a property mean something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,16 +21,19 @@ pub(super) enum Range {
     Any,
 }
 
+/// The file of an image.
+#[derive(Clone, Debug)]
+pub(super) struct ImageName {
+    pub(super) name: String,
+    raw: bool,
+}
+
 impl Writer<'_, '_> {
     /// Every image as a file, and every texture that is not one colour.
     pub(super) fn textures(&mut self) -> Result<(), ImageError> {
         let scene = self.scene;
         for (number, picture) in scene.textures.images.iter().enumerate() {
-            let (ending, bytes) = image::encode(picture).map_err(|problem| ImageError {
-                path: format!("{}/image-{number}", self.folder).into(),
-                problem,
-            })?;
-            let name = self.store(&format!("image-{number}.{ending}"), bytes)?;
+            let name = self.image_file(&format!("image-{number}"), picture)?;
             self.images.push(name);
         }
         for (handle, texture) in scene.textures.list.iter_handles() {
@@ -34,18 +41,8 @@ impl Writer<'_, '_> {
             match texture {
                 Texture::Constant(_) => {}
                 Texture::Bitmap(bitmap) => {
-                    self.xml.plugin("texture", "bitmap", &id);
-                    self.xml.string("filename", &self.images[bitmap.image.index()]);
-                    if bitmap.filter == BitmapFilter::Nearest {
-                        self.xml.string("filter_type", "nearest");
-                    }
-                    match bitmap.wrap {
-                        Wrap::Repeat => {}
-                        Wrap::Mirror => self.xml.string("wrap_mode", "mirror"),
-                        Wrap::Clamp => self.xml.string("wrap_mode", "clamp"),
-                    }
-                    self.to_uv(&bitmap.to_uv);
-                    self.xml.close();
+                    let image = self.images[bitmap.image.index()].clone();
+                    self.bitmap(&id, &image, bitmap);
                 }
                 Texture::Checkerboard(board) => {
                     self.xml.plugin("texture", "checkerboard", &id);
@@ -54,6 +51,92 @@ impl Writer<'_, '_> {
                     self.to_uv(&board.to_uv);
                     self.xml.close();
                 }
+                Texture::VertexColor => {
+                    self.xml.plugin("texture", "mesh_attribute", &id);
+                    self.xml.string("name", "vertex_color");
+                    self.xml.close();
+                }
+                Texture::Scale { .. } | Texture::Mix { .. } | Texture::Channel { .. } => {
+                    self.baked(&id, handle)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn image_file(&mut self, name: &str, image: &Pixmap) -> Result<ImageName, ImageError> {
+        let encoded = image::encode(image)
+            .map_err(|problem| ImageError { path: format!("{}/{name}", self.folder).into(), problem })?;
+        let Encoded { ending, raw, bytes } = encoded;
+        Ok(ImageName { name: self.store(&format!("{name}.{ending}"), bytes)?, raw })
+    }
+
+    fn bitmap(&mut self, id: &str, image: &ImageName, bitmap: &Bitmap) {
+        self.xml.plugin("texture", "bitmap", id);
+        self.xml.string("filename", &image.name);
+        if image.raw {
+            self.xml.boolean("raw", true);
+        }
+        if bitmap.filter == BitmapFilter::Nearest {
+            self.xml.string("filter_type", "nearest");
+        }
+        match bitmap.wrap {
+            Wrap::Repeat => {}
+            Wrap::Mirror => self.xml.string("wrap_mode", "mirror"),
+            Wrap::Clamp => self.xml.string("wrap_mode", "clamp"),
+            Wrap::Black => {
+                self.warn(format!("{id}: an image that ends in black goes on with its edge in Mitsuba"));
+                self.xml.string("wrap_mode", "clamp");
+            }
+        }
+        self.to_uv(&bitmap.to_uv);
+        self.xml.close();
+    }
+
+    /// A texture that Mitsuba lacks, as an image of it: the same to the bit if all in it lies over the pixels of one
+    /// image.
+    fn baked(&mut self, id: &str, texture: Handle<Texture>) -> Result<(), ImageError> {
+        let textures = &self.scene.textures;
+        let mut bitmaps: Vec<&Bitmap> = Vec::new();
+        let mut exact = true;
+        let mut open = vec![texture];
+        while let Some(handle) = open.pop() {
+            match &textures.list[handle] {
+                Texture::Bitmap(bitmap) => bitmaps.push(bitmap),
+                Texture::Checkerboard(_) | Texture::VertexColor => exact = false,
+                _ => {}
+            }
+            open.extend(textures.list[handle].children());
+        }
+        let frame = bitmaps.first().map(|first| (first.to_uv, first.wrap, first.filter));
+        exact &= bitmaps.iter().all(|b| Some((b.to_uv, b.wrap, b.filter)) == frame);
+        let size = |b: &&Bitmap| (textures.images[b.image].width, textures.images[b.image].height);
+        let sizes: Vec<(u32, u32)> = bitmaps.iter().map(size).collect();
+        exact &= sizes.windows(2).all(|pair| pair[0] == pair[1]);
+        let (to_uv, wrap, filter) = frame.unwrap_or_default();
+        let side = |of: fn(&(u32, u32)) -> u32| sizes.iter().map(of).max().unwrap_or(BAKED_SIDE);
+        let (width, height) = (side(|size| size.0), side(|size| size.1));
+        let from_frame = to_uv.inverse();
+        let mut pixels = Vec::new();
+        for y in 0..height {
+            for x in 0..width {
+                let middle =
+                    Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+                pixels.push(textures.eval(texture, from_frame.transform_point2(middle)));
+            }
+        }
+        if !exact {
+            self.warn(format!("{id}: an image of {width} by {height} pixels stands for a texture of several"));
+        }
+        let image = self.image_file(id, &Image { width, height, pixels }.into())?;
+        // Only its frame counts.
+        let any = self.scene.textures.images.iter_handles().next().map(|(handle, _)| handle);
+        match any {
+            Some(any) => self.bitmap(id, &image, &Bitmap { image: any, filter, wrap, to_uv }),
+            None => {
+                self.xml.plugin("texture", "bitmap", id);
+                self.xml.string("filename", &image.name);
+                self.xml.close();
             }
         }
         Ok(())
@@ -86,17 +169,22 @@ impl Writer<'_, '_> {
         }
     }
 
+    /// The mean of a texture's channels.
+    pub(super) fn mean(&self, texture: Handle<Texture>) -> f32 {
+        unit(self.scene.textures.mean(texture)).mean()
+    }
+
     fn to_uv(&mut self, map: &Affine2) {
         if *map == Affine2::IDENTITY {
             return;
         }
-        let flat = |v: nephroid::math::Vec2| DVec3::new(v.x.into(), v.y.into(), 0.0);
+        let flat = |v: Vec2| DVec3::new(v.x.into(), v.y.into(), 0.0);
         let linear = DMat3::from_cols(flat(map.matrix2.x_axis), flat(map.matrix2.y_axis), DVec3::Z);
         self.xml.matrix("to_uv", &DAffine3::from_mat3_translation(linear, flat(map.translation)));
     }
 }
 
-fn texture_id(texture: Handle<Texture>) -> String {
+pub(super) fn texture_id(texture: Handle<Texture>) -> String {
     format!("texture-{}", texture.index())
 }
 

@@ -14,10 +14,6 @@ pub(super) struct Xml {
 }
 
 impl Xml {
-    pub(super) fn comment(&mut self, text: &str) {
-        self.line(&format!("<!-- {} -->", text.replace("--", "- -")));
-    }
-
     /// An element with others in it, until [`Self::close`].
     pub(super) fn open(&mut self, tag: &'static str, attributes: &[(&str, &str)]) {
         self.line(&format!("<{tag}{}>", written(attributes)));
