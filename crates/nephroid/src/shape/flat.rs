@@ -101,6 +101,19 @@ impl Flat {
         }
     }
 
+    /// How the position changes with `u` and `v` where the hit has these coordinates.
+    pub fn tangents(&self, x: f32, y: f32) -> [Vec3; 2] {
+        let Self { edge_x, edge_y, .. } = *self;
+        match self.region {
+            Region::Square | Region::Plane => [edge_x * 2.0, edge_y * 2.0],
+            Region::Disk => {
+                let out = Vec2::new(x, y).try_normalize().unwrap_or(Vec2::X);
+                let turn = (edge_y * x - edge_x * y) * (2.0 * std::f32::consts::PI);
+                [edge_x * out.x + edge_y * out.y, turn]
+            }
+        }
+    }
+
     pub fn bounds(&self) -> Bounds {
         let reach = match self.region {
             Region::Square => self.edge_x.abs() + self.edge_y.abs(),

@@ -52,6 +52,7 @@ impl World {
                     invisible,
                     masked: inside != s.material && !invisible,
                     colored: matches!(s.geometry, Geometry::Mesh(mesh) if !scene.meshes[mesh].colors.is_empty()),
+                    oriented: Material::is_oriented(&scene.materials, s.material, &scene.textures),
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
                     rank: 0,

@@ -32,7 +32,7 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
-use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, offset_origin};
+use crate::math::{Bounds, Ray, Vec2, Vec3, offset_origin};
 use crate::medium::{Boundary, Matter};
 use crate::sampling::Discrete;
 use crate::scene::{Remark, Scene, Subject};
@@ -84,6 +84,8 @@ struct Surfaced {
     masked: bool,
     /// Whether it has colours at its vertices.
     colored: bool,
+    /// Whether its material asks for tangents.
+    oriented: bool,
     /// The radiance and number of the light that it is.
     light: Option<(Handle<Texture>, u32)>,
     /// What it lies between, if it names any medium.
@@ -128,7 +130,6 @@ struct Spot {
     u: f32,
     v: f32,
     primitive: u32,
-    #[expect(dead_code, reason = "tangents ask for it")]
     instance: Option<u32>,
 }
 
@@ -264,8 +265,12 @@ impl World {
     /// How the surface scatters, seen from the side of `wo` and not from inside of any shape with a priority.
     pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
         let material = self.surfaces[hit.shape as usize].material;
-        let (frame, at) = (Frame::from_normal(hit.point.ns), self.texture_point(hit));
-        let surface = Surface { ng: hit.point.ng, frame, at };
+        let (SurfacePoint { ng, ns, uv, .. }, at) = (hit.point, self.texture_point(hit));
+        let surface = if self.surfaces[hit.shape as usize].oriented {
+            Surface::oriented(ng, ns, at, self.scenery.tangents(hit.shape, &hit.spot, uv))
+        } else {
+            Surface::new(ng, ns, at)
+        };
         Material::at(&self.scene.materials, material, &self.scene.textures, &surface, wo)
     }
 

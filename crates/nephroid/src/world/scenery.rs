@@ -1,9 +1,9 @@
-use super::RayHit;
 use super::level::{Candidate, Item, Level, Other, Searcher};
 use super::placed::Placed;
+use super::{RayHit, Spot};
 use crate::bvh::{Lanes, Simd, Work};
 use crate::color::Rgb;
-use crate::math::{Bounds, Ray, Vec2};
+use crate::math::{Bounds, Ray, Vec2, Vec3};
 use crate::scene::Scene;
 use crate::shape::{Intersection, Mesh, Primitive, SurfacePoint, Triangle};
 
@@ -67,6 +67,24 @@ impl Scenery {
     pub fn color(&self, shape: u32, triangle: u32, at: Vec2) -> Rgb {
         self.mesh_of[shape as usize]
             .map_or(Rgb::WHITE, |mesh| self.meshes[mesh as usize].color(triangle, at.x, at.y))
+    }
+
+    /// How the position changes with the texture coordinates `uv` at a place of a shape.
+    pub fn tangents(&self, shape: u32, spot: &Spot, uv: Vec2) -> [Vec3; 2] {
+        let local = match self.mesh_of[shape as usize] {
+            Some(mesh) => {
+                let own = &self.meshes[mesh as usize];
+                Triangle::new(own, mesh, spot.primitive).tangents(own)
+            }
+            None => {
+                let primitive = &self.primitives[spot.primitive as usize];
+                primitive.tangents((spot.u, spot.v), uv, &self.meshes)
+            }
+        };
+        match spot.instance {
+            None => local,
+            Some(instance) => local.map(|v| self.instances[instance as usize].vector(v)),
+        }
     }
 
     /// Some point of a shape, in the space of the scene or of its group, without regard to flipped normals.
