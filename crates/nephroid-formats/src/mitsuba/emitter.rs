@@ -31,6 +31,10 @@ impl<'t> Reader<'t> {
             }),
             "envmap" => self.environment(&plugin),
             "projector" => self.projector(&plugin),
+            "sky" | "sun" | "sunsky" => {
+                self.daylight(&plugin);
+                return;
+            }
             "collimated" => Some(self.collimated(&plugin)),
             "area" => {
                 let message =

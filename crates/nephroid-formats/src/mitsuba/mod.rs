@@ -7,6 +7,7 @@
 
 mod boundary;
 mod cie1931;
+mod daylight;
 mod document;
 mod emitter;
 mod group;

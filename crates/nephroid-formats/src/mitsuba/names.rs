@@ -50,7 +50,7 @@ pub(super) const PROPERTY_NAMES: &[&str] = &[
     "spec_trans", "specular", "specular_reflectance", "specular_reflectance_sampling_rate",
     "specular_sampling_weight", "specular_transmittance", "specular_transmittance_sampling_rate", "sppc",
     "sppi", "sppp", "srf", "srgb_primitives", "start_day", "start_month", "start_year", "stddev",
-    "step_size", "strength", "stretch", "sun_aperture", "sun_direction", "sun_scale", "target",
+    "step_size", "strength", "stretch", "sun_aperture", "sun_direction", "sun_radius_scale", "sun_scale", "target",
     "temperature", "texture", "theta", "thickness", "timeout", "timezone", "to_uv", "to_world",
     "transmittance", "turbidity", "unbounded", "uoffset", "uscale", "use_grid_bbox",
     "use_shadowing_function", "use_spectral_mis", "value", "values", "variant", "voffset", "volume",
@@ -123,9 +123,9 @@ pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] =
 pub(super) const BSDFS_LIKE_NULL: &[&str] = &["polarizer", "retarder", "circular"];
 
 pub(super) const EMITTERS: &[&str] =
-    &["point", "area", "spot", "directional", "constant", "envmap", "projector", "collimated"];
+    &["point", "area", "spot", "directional", "constant", "envmap", "projector", "sky", "sun", "sunsky", "collimated"];
 
-pub(super) const EMITTERS_LATER: &[&str] = &["sunsky", "sun", "sky", "timed_sunsky", "ies"];
+pub(super) const EMITTERS_LATER: &[&str] = &["timed_sunsky", "ies"];
 
 pub(super) const TEXTURES: &[&str] = &[
     "bitmap",

@@ -74,6 +74,11 @@ impl Flat {
         })
     }
 
+    /// Whether it is a parallelogram, whose texture coordinates are those of its sampled points.
+    pub fn is_rectangle(&self) -> bool {
+        self.region == Region::Square
+    }
+
     pub fn intersect(&self, ray: &Ray) -> Option<Intersection> {
         let t = (self.center - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         if !(t > 0.0 && t < ray.t_max) {

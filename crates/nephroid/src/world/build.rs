@@ -1,3 +1,4 @@
+use super::asking::Asked;
 use super::level::{Item, Level, Other};
 use super::nest::ranks;
 use super::placed::Placed;
@@ -7,8 +8,8 @@ use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::light::{
-    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Goniometric, Light, LightKind, Projector,
-    Spot, Sun, Target,
+    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Goniometric, Light, LightKind, Lookup,
+    Projector, Spot, Sun, Target,
 };
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
@@ -35,11 +36,12 @@ impl World {
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
+        let lookup = Lookup { meshes: &scenery.meshes, textures: &scene.textures };
         let (emitters, lamps, emitter_of_shape) =
-            emitters(&scene, pieces_of_lamps, Target { center, radius });
+            emitters(&scene, pieces_of_lamps, lookup, Target { center, radius });
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
-        let for_direct = for_direct(&emitters);
+        let asked = Asked::new(&emitters, lookup);
         let mut surfaces: Vec<Surfaced> = scene
             .all_shapes()
             .enumerate()
@@ -78,7 +80,7 @@ impl World {
             wide_sky: emitters.iter().any(Emitter::is_wide_sky),
             emitters,
             by_power,
-            for_direct,
+            asked,
             camera,
             bounds,
             aims,
@@ -250,16 +252,16 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
 /// The lights of a scene, what each is in the scene, and the light that each shape is.
 type Emitters = (Vec<Emitter>, Vec<Subject>, Vec<Option<u32>>);
 
-fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> Emitters {
+fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, lookup: Lookup<'_>, target: Target) -> Emitters {
     let (mut emitters, mut lamps) = (Vec::new(), Vec::new());
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, (shape, pieces)) in scene.shapes.iter().zip(pieces).enumerate() {
         let Some(radiance) = shape.emission else { continue };
         let index = emitters.len() as u32;
         let convex = is_convex(shape).then_some(index);
-        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals, convex) {
+        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals, convex, lookup) {
             of_shape[i] = Some(index);
-            let power = area.power(&scene.textures);
+            let power = area.power();
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });
             lamps.push(Subject::Shape(i));
         }
@@ -328,13 +330,4 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
         }
     };
     Some(Emitter { name: light.name.clone(), kind, power })
-}
-
-/// Half by power, half evenly among the lights that have any. A sky's power is what reaches the bounds
-/// of the scene, of which one place may see little, and power alone would all but never ask the lamp
-/// beside it.
-fn for_direct(emitters: &[Emitter]) -> Option<Discrete> {
-    let powers: Vec<f64> = emitters.iter().map(|e| f64::from(e.power.mean())).collect();
-    let (total, lit) = (powers.iter().sum::<f64>(), powers.iter().filter(|p| **p > 0.0).count() as f64);
-    Discrete::new(powers.iter().map(|&p| if p > 0.0 { 0.5 * p / total + 0.5 / lit } else { 0.0 }))
 }

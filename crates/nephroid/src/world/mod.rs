@@ -1,6 +1,7 @@
 //! The world: a checked scene with everything that rendering needs prepared. Nothing in it changes,
 //! and nothing that is done with it can fail.
 
+mod asking;
 mod build;
 mod cutout;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::asking::Asked;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
@@ -57,8 +59,8 @@ pub struct World {
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
-    /// Emitters as next event estimation asks them.
-    for_direct: Option<Discrete>,
+    /// How next event estimation asks emitters.
+    asked: Asked,
     camera: CameraRays,
     bounds: Bounds,
     aims: Aims,
@@ -187,10 +189,6 @@ impl World {
 
     pub(crate) fn lights_by_power(&self) -> Option<&Discrete> {
         self.by_power.as_ref()
-    }
-
-    pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
-        self.for_direct.as_ref()
     }
 
     /// What photons are aimed at.
