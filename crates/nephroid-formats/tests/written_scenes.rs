@@ -122,7 +122,7 @@ fn built_in_scenes_come_back() {
             with_warnings.push(path.file_stem().expect("a name").to_string_lossy().into_owned());
         }
     }
-    assert_eq!(with_warnings, ["fog"], "scenes with what Mitsuba lacks");
+    assert_eq!(with_warnings, ["report-3-6"], "scenes with what Mitsuba lacks");
 }
 
 #[test]
@@ -188,8 +188,64 @@ fn materials_and_textures_come_back() {
 }
 
 #[test]
+fn rough_and_layered_materials_come_back() {
+    let grey = nephroid_formats::image::encode_png(&nephroid::texture::Image::filled(
+        2,
+        2,
+        nephroid::color::Rgb::splat(0.6),
+    ));
+    let files = MemoryFiles::default().with("a.png", grey.expect("a picture"));
+    let map = r#"<texture type="bitmap" name="normalmap"><string name="filename" value="a.png"/><boolean name="raw" value="true"/></texture>"#;
+    let materials = [
+        r#"<bsdf type="roughconductor"><string name="material" value="Cu"/><string name="distribution" value="ggx"/>
+        <float name="alpha_u" value="0.2"/><float name="alpha_v" value="0.05"/></bsdf>"#.to_owned(),
+        format!(r#"<bsdf type="roughconductor">{}</bsdf>"#, map.replace("normalmap", "alpha")),
+        r#"<bsdf type="roughdielectric"><float name="alpha" value="0.3"/><float name="int_ior" value="1.7"/></bsdf>"#.to_owned(),
+        r#"<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1, 0.2, 0.3"/><boolean name="nonlinear" value="true"/></bsdf>"#.to_owned(),
+        r#"<bsdf type="roughplastic"><string name="distribution" value="ggx"/><float name="alpha" value="0.2"/></bsdf>"#.to_owned(),
+        r#"<bsdf type="principled"><rgb name="base_color" value="0.9, 0.2, 0.3"/><float name="roughness" value="0.3"/>
+        <float name="metallic" value="0.4"/><float name="clearcoat" value="0.7"/><float name="eta" value="1.6"/></bsdf>"#.to_owned(),
+        r#"<bsdf type="blendbsdf"><float name="weight" value="0.3"/><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf>"#.to_owned(),
+        format!(r#"<bsdf type="normalmap">{map}<bsdf type="diffuse"/></bsdf>"#),
+        format!(r#"<bsdf type="bumpmap">{map}<float name="scale" value="0.2"/><bsdf type="diffuse"/></bsdf>"#),
+    ];
+    let shapes: String = materials.iter().map(|m| format!("<shape type=\"sphere\">{m}</shape>\n")).collect();
+    let file = read(&format!("{CAMERA}{shapes}"), &files);
+    assert_eq!(comes_back(&file), Vec::<String>::new());
+}
+
+#[test]
+fn products_of_textures_are_baked() {
+    let grey = nephroid_formats::image::encode_png(&nephroid::texture::Image::filled(
+        2,
+        2,
+        nephroid::color::Rgb::splat(0.6),
+    ));
+    let files = MemoryFiles::default().with("a.png", grey.expect("a picture"));
+    let file = read(
+        &format!(
+            r#"{CAMERA}<shape type="sphere"><bsdf type="diffuse"><texture type="scale" name="reflectance">
+            <rgb name="scale" value="0.5, 1, 0.25"/><texture type="bitmap"><string name="filename" value="a.png"/>
+            <transform name="to_uv"><scale x="3" y="2"/></transform></texture></texture></bsdf></shape>"#
+        ),
+        &files,
+    );
+    let (text, files, written) = written(&file);
+    assert_eq!(written.warnings, Vec::<String>::new());
+    let again =
+        read_scene_str("out.xml", &text, &files, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    let value = |file: &SceneFile| {
+        let material = &file.scene.materials[file.scene.shapes[0].material];
+        let nephroid::material::Material::Diffuse { reflectance } = *material else { panic!("{material:?}") };
+        file.scene.textures.eval(reflectance, nephroid::math::Vec2::new(0.3, 0.7))
+    };
+    assert_eq!(value(&file), value(&again), "{text}");
+}
+
+#[test]
 fn meshes_instances_lights_and_media_come_back() {
-    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nv 1 1 0\nvt 0 0.25\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 2/2 4/1 3/3\n";
+    let obj =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nv 1 1 0\nvt 0 0.25\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 2/2 4/1 3/3\n";
     let mut vol = b"VOL\x03".to_vec();
     vol.extend([1i32, 1, 1, 2, 1].iter().flat_map(|v| v.to_le_bytes()));
     vol.extend([0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0, 7.0, 0.1].iter().flat_map(|v| v.to_le_bytes()));

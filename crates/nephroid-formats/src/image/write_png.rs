@@ -32,12 +32,7 @@ pub(crate) fn encode_bytes(
     encode(width, height, kind, data).map_err(|e| ImageProblem::Write(e.into()))
 }
 
-fn encode(
-    width: u32,
-    height: u32,
-    kind: png::ColorType,
-    data: &[u8],
-) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(width: u32, height: u32, kind: png::ColorType, data: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(kind);

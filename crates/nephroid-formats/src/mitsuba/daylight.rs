@@ -95,7 +95,9 @@ impl<'t> Reader<'t> {
         let omega = degrees(2.1429 - 0.001_039_459_4 * n);
         let anomaly = degrees(6.240_06 + 0.017_201_969_9 * n);
         let ecliptic = degrees(
-            4.895_063 + 0.017_202_791_698 * n + 0.033_416_07 * sin_deg(anomaly)
+            4.895_063
+                + 0.017_202_791_698 * n
+                + 0.033_416_07 * sin_deg(anomaly)
                 + 0.000_348_94 * sin_deg(2.0 * anomaly)
                 - 0.000_113_4
                 - 0.000_020_3 * sin_deg(omega),

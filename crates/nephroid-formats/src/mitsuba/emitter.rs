@@ -143,7 +143,14 @@ impl<'t> Reader<'t> {
             }
         };
         let scale = Rgb::splat(scale);
-        Some(LightKind::Projector { to_world, image, scale, unit: ProjectorUnit::Irradiance, fov_deg, fov_axis })
+        Some(LightKind::Projector {
+            to_world,
+            image,
+            scale,
+            unit: ProjectorUnit::Irradiance,
+            fov_deg,
+            fov_axis,
+        })
     }
 
     /// A beam without width, as a narrow spot of the same power.

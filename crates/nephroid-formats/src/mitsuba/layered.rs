@@ -137,7 +137,8 @@ impl<'t> Reader<'t> {
             Material::BumpMap { heights: texture, scale, inside }
         } else {
             let raw = self.plugin(element);
-            if raw.kind == "bitmap" && !raw.boolean("raw", false) && raw.optional_float("gamma") != Some(1.0) {
+            if raw.kind == "bitmap" && !raw.boolean("raw", false) && raw.optional_float("gamma") != Some(1.0)
+            {
                 let message = Diagnostic::warning(&element.location, "the normals are decoded from sRGB");
                 self.log.push(message.hint("<boolean name=\"raw\" value=\"true\"/> takes them as they are"));
             }
@@ -219,8 +220,7 @@ impl<'t> Reader<'t> {
         let specular_reflectance = self.brightened(plugin, specular, share);
         let first = self.store(plugin, Material::Diffuse { reflectance });
         let metal = Metal::PerfectMirror;
-        let second =
-            self.store(plugin, Material::RoughConductor { metal, specular_reflectance, roughness });
+        let second = self.store(plugin, Material::RoughConductor { metal, specular_reflectance, roughness });
         let weight = self.store_texture(plugin.location(), Texture::Constant(Rgb::splat(share)));
         self.store(plugin, Material::Blend { weight, first, second })
     }

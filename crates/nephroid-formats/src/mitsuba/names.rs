@@ -122,8 +122,19 @@ pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] =
 /// Those that filter polarised light.
 pub(super) const BSDFS_LIKE_NULL: &[&str] = &["polarizer", "retarder", "circular"];
 
-pub(super) const EMITTERS: &[&str] =
-    &["point", "area", "spot", "directional", "constant", "envmap", "projector", "sky", "sun", "sunsky", "collimated"];
+pub(super) const EMITTERS: &[&str] = &[
+    "point",
+    "area",
+    "spot",
+    "directional",
+    "constant",
+    "envmap",
+    "projector",
+    "sky",
+    "sun",
+    "sunsky",
+    "collimated",
+];
 
 pub(super) const EMITTERS_LATER: &[&str] = &["timed_sunsky", "ies"];
 

@@ -85,11 +85,8 @@ impl<'t> Reader<'t> {
         let passed = 0.5 * self.textures.mean(diff_trans).mean();
         let sheet = self.store(plugin, Material::MetallicRoughness(Box::new(sheet)));
         let clear = self.textures.list[transmission] != Texture::Constant(Rgb::BLACK);
-        let sheet = if clear {
-            sheet
-        } else {
-            self.store(plugin, Material::TwoSided { front: sheet, back: sheet })
-        };
+        let sheet =
+            if clear { sheet } else { self.store(plugin, Material::TwoSided { front: sheet, back: sheet }) };
         if passed == 0.0 {
             return sheet;
         }

@@ -50,7 +50,8 @@ impl<'t> Reader<'t> {
         if let Some((name, at)) = plugin.text("distribution")
             && ["phong", "as"].iter().any(|old| old.eq_ignore_ascii_case(name))
         {
-            let message = format!("the distribution \"{name}\" is not known here; \"beckmann\" stands for it");
+            let message =
+                format!("the distribution \"{name}\" is not known here; \"beckmann\" stands for it");
             self.log.push(Diagnostic::warning(at, message).hint("its highlights have shorter tails"));
         }
         distribution

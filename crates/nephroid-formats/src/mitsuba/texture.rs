@@ -221,7 +221,9 @@ impl<'t> Reader<'t> {
     fn is_linear(&self, plugin: &Plugin<'t>) -> bool {
         let Some(gamma) = plugin.optional_float("gamma") else { return false };
         // Nothing but one and the curve of sRGB can be had; the latter is close to 2.2, and -1 asks for it.
-        if let Some(property) = plugin.property("gamma").filter(|_| gamma > 0.0 && gamma != 1.0 && gamma != 2.2) {
+        if let Some(property) =
+            plugin.property("gamma").filter(|_| gamma > 0.0 && gamma != 1.0 && gamma != 2.2)
+        {
             self.log.warn(&property.location, format!("the curve of sRGB stands for a gamma of {gamma}"));
         }
         gamma == 1.0
@@ -259,7 +261,10 @@ impl<'t> Reader<'t> {
         let color = match name {
             Some((name, _)) if name == "vertex_color" => Texture::VertexColor,
             Some((name, at)) => {
-                let message = format!("only \"vertex_color\" is read of meshes; \"{}\" is plain grey (0.5)", shortened(name));
+                let message = format!(
+                    "only \"vertex_color\" is read of meshes; \"{}\" is plain grey (0.5)",
+                    shortened(name)
+                );
                 self.log.warn(at, message);
                 Texture::Constant(Rgb::splat(0.5))
             }

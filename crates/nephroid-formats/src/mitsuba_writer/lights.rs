@@ -57,7 +57,12 @@ impl Writer<'_, '_> {
                 self.xml.plugin("emitter", "constant", id);
                 self.xml.rgb("radiance", *radiance);
             }
-            LightKind::Environment { image, mapping: EnvironmentMapping::Equirectangular, scale, to_world } => {
+            LightKind::Environment {
+                image,
+                mapping: EnvironmentMapping::Equirectangular,
+                scale,
+                to_world,
+            } => {
                 self.xml.plugin("emitter", "envmap", id);
                 self.xml.string("filename", &self.images[image.index()].name);
                 self.xml.float("scale", *scale);
@@ -69,7 +74,9 @@ impl Writer<'_, '_> {
                 self.xml.rgb("radiance", self.scene.textures.images[*image].mean() * *scale);
             }
             LightKind::Goniometric { to_world, intensity, table, .. } => {
-                self.warn(format!("{id}: Mitsuba has no goniometric lights: one the same all around stands for it"));
+                self.warn(format!(
+                    "{id}: Mitsuba has no goniometric lights: one the same all around stands for it"
+                ));
                 self.xml.plugin("emitter", "point", id);
                 self.xml.point("position", to_world.point(Vec3::ZERO));
                 self.xml.rgb("intensity", *intensity * self.scene.textures.images[*table].mean());

@@ -30,11 +30,14 @@ impl Writer<'_, '_> {
     pub(super) fn plain_roughness(&mut self, id: &str, roughness: &Roughness) {
         self.distribution(roughness);
         let sides = [roughness.alpha_u, roughness.alpha_v];
-        if sides[0] != sides[1] || self.constant(sides[0]).is_none_or(|v| v.min_channel() != v.max_channel()) {
-            self.warn(format!("{id}: Mitsuba's plastic is as rough everywhere and in all directions"));
+        let grey = self.constant(sides[0]).filter(|v| v.min_channel() == v.max_channel());
+        match grey.filter(|_| sides[0] == sides[1]) {
+            Some(alpha) => self.xml.float("alpha", alpha.r),
+            None => {
+                self.warn(format!("{id}: Mitsuba's plastic is as rough everywhere and in all directions"));
+                self.xml.float("alpha", 0.5 * (self.mean(sides[0]) + self.mean(sides[1])));
+            }
         }
-        let mean = 0.5 * (self.mean(sides[0]) + self.mean(sides[1]));
-        self.xml.float("alpha", if sides[0] == sides[1] { self.mean(sides[0]) } else { mean });
     }
 
     pub(super) fn principled(&mut self, id: &str, principled: &Principled) {
@@ -102,7 +105,14 @@ impl Writer<'_, '_> {
     }
 
     /// `normalmap` and `bumpmap`; what has no texture is nothing but the material in it.
-    pub(super) fn tilted(&mut self, id: &str, map: Handle<Texture>, scale: f32, inside: Handle<Material>, bump: bool) {
+    pub(super) fn tilted(
+        &mut self,
+        id: &str,
+        map: Handle<Texture>,
+        scale: f32,
+        inside: Handle<Material>,
+        bump: bool,
+    ) {
         if self.constant(map).is_some() {
             // Nowhere tilted, or everywhere alike, which no image of a normal is.
             self.warn(format!("{id}: normals are tilted by images only"));

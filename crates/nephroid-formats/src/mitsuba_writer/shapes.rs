@@ -112,7 +112,9 @@ impl Writer<'_, '_> {
             let points: &[Vec3] = match shape.geometry {
                 Geometry::Mesh(mesh) => &scene.meshes[mesh].positions,
                 Geometry::Sphere { center, radius } => &[center + radius, center - radius],
-                Geometry::Cylinder { p0, p1, radius } => &[p0 + radius, p1 + radius, p0 - radius, p1 - radius],
+                Geometry::Cylinder { p0, p1, radius } => {
+                    &[p0 + radius, p1 + radius, p0 - radius, p1 - radius]
+                }
                 Geometry::Plane => &[Vec3::ZERO],
                 Geometry::Rectangle | Geometry::Disk | Geometry::Cube => &[Vec3::ONE, Vec3::NEG_ONE],
             };

@@ -120,13 +120,14 @@ impl Writer<'_, '_> {
         let mut pixels = Vec::new();
         for y in 0..height {
             for x in 0..width {
-                let middle =
-                    Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+                let middle = Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
                 pixels.push(textures.eval(texture, from_frame.transform_point2(middle)));
             }
         }
         if !exact {
-            self.warn(format!("{id}: an image of {width} by {height} pixels stands for a texture of several"));
+            self.warn(format!(
+                "{id}: an image of {width} by {height} pixels stands for a texture of several"
+            ));
         }
         let image = self.image_file(id, &Image { width, height, pixels }.into())?;
         // Only its frame counts.
