@@ -93,8 +93,12 @@ impl Writer<'_, '_> {
                 self.xml.float("fov", *fov_deg);
                 self.xml.string("fov_axis", axis_name(*fov_axis));
                 self.xml.float("scale", scale.mean() * FRAC_1_PI);
+                let image = self.images[image.index()].clone();
                 self.xml.open("texture", &[("type", "bitmap"), ("name", "irradiance")]);
-                self.xml.string("filename", &self.images[image.index()].name);
+                self.xml.string("filename", &image.name);
+                if image.raw {
+                    self.xml.boolean("raw", true);
+                }
                 self.xml.close();
             }
         }

@@ -25,7 +25,7 @@ pub(super) enum Range {
 #[derive(Clone, Debug)]
 pub(super) struct ImageName {
     pub(super) name: String,
-    raw: bool,
+    pub(super) raw: bool,
 }
 
 impl Writer<'_, '_> {
