@@ -197,7 +197,7 @@ impl World {
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {
-        Lookup { meshes: &self.scenery.meshes, textures: &self.scene.textures }
+        Lookup { meshes: self.scenery.meshes.as_slice(), textures: &self.scene.textures }
     }
 
     pub(crate) fn camera(&self) -> &CameraRays {
