@@ -25,7 +25,11 @@ const TESTS: usize = 400;
 
 fn cell(direction: Vec3) -> usize {
     let a = direction.abs();
-    let longest = if a.x > a.y && a.x > a.z { 0 } else { if a.y > a.z { 1 } else { 2 } };
+    let longest = match a {
+        a if a.x > a.y && a.x > a.z => 0,
+        a if a.y > a.z => 1,
+        _ => 2,
+    };
     let signs = direction.to_array().iter().fold(0, |bits, c| 2 * bits + usize::from(*c > 0.0));
     8 * longest + signs
 }
@@ -186,17 +190,17 @@ fn a_sun_of_any_width_has_its_irradiance() {
         let irradiance = Rgb::new(0.5, 1.0, 2.0);
         let world = world(|_, _| LightKind::Sun { direction, irradiance, angular_radius_deg });
         let (emitter, middle) = (&world.emitters()[0], direction.normalize());
-        let n = 256u16;
+        let n = 128u16;
         let mut sum = 0.0;
-        for i in 0..n * n / 4 {
-            let u = (Vec2::new(f32::from(i % (n / 2)), f32::from(i / (n / 2))) + 0.5) / f32::from(n / 2);
+        for i in 0..n * n {
+            let u = (Vec2::new(f32::from(i % n), f32::from(i / n)) + 0.5) / f32::from(n);
             let incident = emitter.sample_incident(world.lookup(), Vec3::ONE, u).expect("light");
             sum += f64::from(incident.radiance.g * incident.wi.dot(middle) / incident.pdf_solid_angle);
         }
-        let found = sum / f64::from(n * (n / 4));
+        let found = sum / f64::from(n * n);
         assert!((found - 1.0).abs() < 1e-4, "{found} at {angular_radius_deg}");
         assert_eq!(emitter.is_sky(), angular_radius_deg > 0.0);
-        assert_eq!(world.has_wide_sky(), false);
+        assert!(!world.has_wide_sky());
         let beside = warp::square_to_cone(Vec2::new(1.0, 0.3), warp::one_minus_cos(1.01f32.to_radians()));
         let beside = crate::math::Frame::from_normal(middle).to_world(beside);
         assert_eq!(world.sky(beside).is_black(), angular_radius_deg < 1.01);

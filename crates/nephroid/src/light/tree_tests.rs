@@ -19,16 +19,16 @@ use crate::world::World;
 /// The tests of this file.
 const TESTS: usize = 10;
 
-fn place(rng: &mut Pcg32) -> Transform {
+fn place(rng: &mut Pcg32, width: f64) -> Transform {
     let [x, y] = rng.vec2().map(|u| u - 0.5);
     let axis = warp::square_to_sphere(Vec2::from_array(rng.vec2_f32())).as_dvec3();
     Transform::scale(DVec3::splat(0.02 + 0.05 * rng.next_f64()))
         .then(Transform::rotate(axis, 360.0 * rng.next_f64()))
-        .then(Transform::translate(DVec3::new(8.0 * x, 8.0 * y, 0.3 + 3.0 * rng.next_f64())))
+        .then(Transform::translate(DVec3::new(width * x, width * y, 0.3 + 3.0 * rng.next_f64())))
 }
 
-/// A glossy floor under lamps of all kinds, some of which give no light.
-fn scene(lamps: u32, all_kinds: bool) -> World {
+/// A glossy floor under lamps of all kinds, some of which give no light, spread over a square of this width.
+fn scene(lamps: u32, width: f64, all_kinds: bool) -> World {
     let camera = Camera {
         to_world: Transform::translate(DVec3::new(0.0, 0.0, 1.0)),
         projection: Projection::Orthographic,
@@ -45,12 +45,12 @@ fn scene(lamps: u32, all_kinds: bool) -> World {
         exponent: 20.0,
     });
     let floor = Shape::new("floor", Geometry::Rectangle, glossy);
-    scene.shapes.push(Shape { to_world: Transform::scale(DVec3::splat(5.0)), ..floor });
+    scene.shapes.push(Shape { to_world: Transform::scale(DVec3::splat(width)), ..floor });
     let image =
         scene.textures.images.push(Image { width: 2, height: 1, pixels: vec![Rgb::WHITE, Rgb::splat(0.1)] });
     let mut rng = Pcg32::new(1);
     for i in 0..lamps {
-        let to_world = place(&mut rng);
+        let to_world = place(&mut rng, width);
         let strength = if i % 50 == 49 { 0.0 } else { rng.next_f32() };
         let intensity = Rgb::new(strength, 0.5 * strength, 0.2);
         let intensity = if strength > 0.0 { intensity } else { Rgb::BLACK };
@@ -111,7 +111,7 @@ fn asker(rng: &mut Pcg32, number: u32) -> Asker {
 
 #[test]
 fn probabilities_add_up_and_no_lamp_that_gives_light_is_left_out() {
-    let world = scene(1000, true);
+    let world = scene(1000, 8.0, true);
     let mut rng = Pcg32::new(2);
     let (mut never, mut dark) = (0, 0);
     for i in 0..100 {
@@ -135,7 +135,7 @@ fn probabilities_add_up_and_no_lamp_that_gives_light_is_left_out() {
 
 #[test]
 fn lamps_are_asked_as_often_as_is_said() {
-    let world = scene(60, true);
+    let world = scene(60, 8.0, true);
     let mut rng = Pcg32::new(3);
     for i in 0..4 {
         let from = asker(&mut rng, i);
@@ -158,7 +158,7 @@ fn lamps_are_asked_as_often_as_is_said() {
 /// Lamps and rays from the BSDF find the same light with the weights of both, whichever lamps are asked.
 #[test]
 fn one_of_many_lamps_stands_for_all() {
-    let world = scene(400, false);
+    let world = scene(400, 8.0, false);
     let hit = world.intersect(&Ray::new(Vec3::new(0.3, -0.2, 0.1), Vec3::NEG_Z)).expect("the floor");
     let wo = Vec3::new(0.3, 0.1, 1.0).normalize();
     let bsdf = world.bsdf(&hit, wo);
@@ -181,7 +181,7 @@ fn one_of_many_lamps_stands_for_all() {
 /// What the tree is for: at the same count, far less noise than by power.
 #[test]
 fn lamps_close_by_are_asked_more() {
-    let world = scene(1000, true);
+    let world = scene(1000, 60.0, true);
     let from = Asker { position: Vec3::new(0.3, -0.2, 0.0), normal: Vec3::Z };
     let irradiance = |light: usize| {
         let incident =
@@ -198,5 +198,5 @@ fn lamps_close_by_are_asked_more() {
     let by_tree = variance(&|light| f64::from(world.chance_of_asking(light, &from)));
     let table = world.lights_by_power().expect("lamps");
     let by_power = variance(&|light| f64::from(table.pmf(light)));
-    assert!(by_tree < 0.5 * by_power, "{by_tree} and {by_power}");
+    assert!(by_tree < 0.2 * by_power, "{by_tree} and {by_power}");
 }

@@ -225,8 +225,8 @@ pub(crate) fn sky_by_bsdf(
     lights: DirectLights,
 ) -> Rgb {
     let textures = &world.scene().textures;
-    let skies = world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky());
-    skies
+    world
+        .skies()
         .map(|(i, emitter)| {
             let pdf = emitter.pdf_of_sky(direction) * choice(world, i, from, lights);
             emitter.sky_radiance(textures, direction) * power_heuristic(pdf_bsdf, pdf)

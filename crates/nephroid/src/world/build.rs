@@ -79,6 +79,7 @@ impl World {
             cutouts,
             transparent,
             surface_lights: emitters.len(),
+            skies: (0..).zip(&emitters).filter(|(_, e)| e.is_sky()).map(|(i, _)| i).collect(),
             wide_sky: emitters.iter().any(Emitter::is_wide_sky),
             emitters,
             by_power,

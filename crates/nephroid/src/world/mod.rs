@@ -53,7 +53,9 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
-    /// Whether any of them is a sky of which most directions bring some.
+    /// Those of them that rays which meet nothing see.
+    skies: Vec<u32>,
+    /// Whether any of these is one of which most directions bring some.
     wide_sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
@@ -204,6 +206,11 @@ impl World {
         &self.camera
     }
 
+    /// The emitters that rays which meet nothing see, with their numbers.
+    pub(crate) fn skies(&self) -> impl Iterator<Item = (usize, &Emitter)> {
+        self.skies.iter().map(|&number| (number as usize, &self.emitters[number as usize]))
+    }
+
     /// Whether light comes from a sky, in most directions.
     pub(crate) fn has_wide_sky(&self) -> bool {
         self.wide_sky
@@ -292,7 +299,7 @@ impl World {
 
     /// Radiance that a ray which meets nothing sees, in W/(m²·sr).
     pub fn sky(&self, direction: Vec3) -> Rgb {
-        self.emitters.iter().map(|e| e.sky_radiance(&self.scene.textures, direction)).sum()
+        self.skies().map(|(_, e)| e.sky_radiance(&self.scene.textures, direction)).sum()
     }
 }
 

@@ -198,7 +198,7 @@ impl Camera<'_> {
     /// Leaves the scene.
     fn meet_sky(&self, walk: &mut Walk, out: &mut Components, probe: &mut impl Probe) {
         let (world, direction) = (self.world, walk.ray.direction);
-        for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
+        for (light, emitter) in world.skies() {
             let radiance = emitter.sky_radiance(&world.scene().textures, direction);
             let lamp = |from: &Asker| LampEnd::in_sky(world, light, direction, radiance, from);
             self.meet(walk, radiance, lamp, out, probe);
