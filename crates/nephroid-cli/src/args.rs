@@ -38,6 +38,8 @@ pub enum Command {
     Tonemap(TonemapArgs),
     /// Measure how far a picture is from its reference
     Compare(CompareArgs),
+    /// Write a scene as a file of Mitsuba 3
+    Convert(ConvertArgs),
     /// Tell what a scene contains
     Info(InfoArgs),
     /// Draw the photons of a scene, or write each of them to a table or a cloud of points
@@ -77,6 +79,9 @@ pub struct SceneArgs {
     pub lenient: bool,
     #[command(flatten)]
     pub view: ViewArgs,
+    /// Read no file outside of this folder, wherever links lead [default: the scene's own folder]
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
+    pub sandbox: Option<Option<PathBuf>>,
 }
 
 /// `nephroid render`.
@@ -210,6 +215,21 @@ pub struct CompareArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// `nephroid convert`.
+#[derive(Args, Debug)]
+pub struct ConvertArgs {
+    /// A scene file, or the name of a built-in scene
+    pub scene: PathBuf,
+    /// The file to write, .xml; what it needs goes into the folder OUT_files beside it
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: SceneArgs,
+    /// Write over files that exist
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// `nephroid info`.

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use nephroid_formats::vfs::{DiskFiles, Files, normalized};
+use nephroid_formats::vfs::{Files, normalized};
 
 /// A scene that can be rendered by its name from any folder.
 #[derive(Clone, Copy, Debug)]
@@ -83,13 +83,20 @@ impl BuiltinScene {
     }
 }
 
-impl Files for BuiltinScene {
-    /// The scene's own files come first. A parameter may name one on the disk.
+/// What a built-in scene may read.
+pub struct BuiltinFiles<'a> {
+    /// Whose own files come first.
+    pub scene: &'a BuiltinScene,
+    /// Where others are: a parameter may name one.
+    pub disk: &'a dyn Files,
+}
+
+impl Files for BuiltinFiles<'_> {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let path = normalized(path);
-        match self.files.iter().find(|(name, _)| path == Path::new(name)) {
+        match self.scene.files.iter().find(|(name, _)| path == Path::new(name)) {
             Some((_, bytes)) => Ok(bytes.to_vec()),
-            None => DiskFiles.read(&path),
+            None => self.disk.read(&path),
         }
     }
 }

@@ -155,6 +155,7 @@ impl Job {
         if args.reading.view.envmap.as_deref() != Some(Path::new("none")) {
             args.reading.view.envmap = args.reading.view.envmap.map(|image| from_here(&image));
         }
+        args.reading.sandbox = args.reading.sandbox.map(|folder| folder.map(|folder| from_here(&folder)));
         args.denoise.oidn_library = args.denoise.oidn_library.map(|library| from_here(&library));
         args.watch = Default::default();
         Ok(args)
@@ -251,6 +252,9 @@ mod tests {
         let args = job().args().unwrap();
         assert_eq!(job().named_from_here(Path::new("b.exr")), Path::new("/home/a/b.exr"));
         assert_eq!(args.reading.defines, [("x".to_owned(), "1 2".to_owned())]);
+        let mut within = job();
+        within.arguments.push("--sandbox=c".to_owned());
+        assert_eq!(within.args().unwrap().reading.sandbox, Some(Some("/home/a/c".into())));
         let mut wrong = job();
         wrong.arguments.push("--no-such-flag".to_owned());
         assert!(wrong.args().unwrap_err().contains("--no-such-flag"));

@@ -11,10 +11,10 @@ use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
 use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::scene::read_scene;
 use nephroid_formats::vfs::{DiskFiles, Files};
-use nephroid_formats::{Options, Origins, SceneFile};
+use nephroid_formats::{Options, Origins, SandboxFiles, SceneFile};
 
 use crate::args::SceneArgs;
-use crate::builtin::{self, BuiltinScene};
+use crate::builtin::{self, BuiltinFiles, BuiltinScene};
 use crate::exit::Failure;
 use crate::identity::{Identity, RecordingFiles, fingerprint};
 use crate::scenes;
@@ -45,8 +45,23 @@ pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
 /// Reads it, and tells the fingerprints of its text and of every file it reads.
 pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Identity), Failure> {
     let options = Options { defines: args.defines.clone(), lenient: args.lenient };
-    if let Some(builtin) = builtin_of(scene) {
-        let files = RecordingFiles::new(builtin);
+    let builtin = builtin_of(scene);
+    let sandbox = match &args.sandbox {
+        // A built-in scene stands where it is rendered.
+        Some(folder) => Some(sandbox(match folder {
+            Some(folder) => folder,
+            None if builtin.is_some() => Path::new("."),
+            None => scene.parent().unwrap_or(Path::new(".")),
+        })?),
+        None => None,
+    };
+    let disk: &dyn Files = match &sandbox {
+        Some(sandbox) => sandbox,
+        None => &DiskFiles,
+    };
+    if let Some(builtin) = builtin {
+        let files = BuiltinFiles { scene: builtin, disk };
+        let files = RecordingFiles::new(&files);
         let name = format!("{}.xml", builtin.name);
         let mut file = read_scene_str(&name, builtin.text, &files, &options).map_err(Failure::Scene)?;
         view(&mut file, args, &files)?;
@@ -55,7 +70,7 @@ pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Ident
         return Ok((file, identity));
     }
     check_readable(scene)?;
-    let files = RecordingFiles::new(&DiskFiles);
+    let files = RecordingFiles::new(disk);
     let mut file = read_scene(scene, &files, &options).map_err(Failure::Scene)?;
     view(&mut file, args, &files)?;
     Ok((file, files.fingerprints(scene)))
@@ -67,6 +82,12 @@ fn view(file: &mut SceneFile, args: &SceneArgs, files: &dyn Files) -> Result<(),
     let remark = file.fitted.remark(&file.scene, &file.origins.scene);
     file.warnings.extend(remark);
     Ok(())
+}
+
+fn sandbox(folder: &Path) -> Result<SandboxFiles, Failure> {
+    SandboxFiles::new(folder).map_err(|error| {
+        Failure::Usage(format!("--sandbox: the folder \"{}\" cannot be had: {error}", folder.display()))
+    })
 }
 
 /// Tells a file that cannot be read, which is no fault of the scene.

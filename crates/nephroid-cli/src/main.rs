@@ -5,6 +5,7 @@ mod builtin;
 mod checkpoint;
 mod compare;
 mod console;
+mod convert;
 mod denoise;
 mod exit;
 mod fault;
@@ -67,6 +68,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Scenes(args) => scenes::run(args),
         Command::Tonemap(args) => tonemap::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Info(args) => info::run(args),
         Command::Photons(args) => photons::run(args),
         Command::Inspect(args) => inspect::run(args),

@@ -10,11 +10,14 @@ mod integrator_request;
 mod log;
 pub mod mesh;
 pub mod mitsuba;
+pub mod mitsuba_writer;
 pub mod photons;
+mod sandbox;
 pub mod scene;
 mod scene_file;
 pub mod vfs;
 pub mod volume;
 
 pub use integrator_request::{AovLayer, IntegratorParameter, IntegratorRequest, ParameterValue};
+pub use sandbox::{OutsideSandbox, SandboxFiles};
 pub use scene_file::{Options, Origins, SceneFile};

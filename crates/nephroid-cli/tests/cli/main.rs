@@ -3,6 +3,7 @@
 // `clippy.toml` allows it in tests, but not in what tests have in common.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod convert;
 mod denoising;
 mod errors;
 mod fogs;

@@ -29,6 +29,7 @@ pub use limits::{MAX_PIXELS, MAX_SIDE};
 pub use output::check_writable;
 pub(crate) use output::{stream_atomically, write_atomically};
 pub use write_exr::{Layer, LayerData, encode_exr, write_exr};
+pub(crate) use write_png::encode_bytes;
 pub use write_png::{encode_png, write_png};
 
 /// The formats that can be read.

@@ -19,13 +19,23 @@ pub fn encode_png(image: &Image) -> Result<Vec<u8>, ImageProblem> {
     // The conversion saturates, and sends NaN to 0.
     let byte = |v: f32| (v * 255.0 + 0.5) as u8;
     let data: Vec<u8> = image.pixels.iter().flat_map(|p| p.to_array().map(byte)).collect();
-    encode(image.width, image.height, &data).map_err(|e| ImageProblem::Write(e.into()))
+    encode_bytes(image.width, image.height, png::ColorType::Rgb, &data)
 }
 
-fn encode(width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+/// Rows of bytes as a PNG file that is marked as sRGB.
+pub(crate) fn encode_bytes(
+    width: u32,
+    height: u32,
+    kind: png::ColorType,
+    data: &[u8],
+) -> Result<Vec<u8>, ImageProblem> {
+    encode(width, height, kind, data).map_err(|e| ImageProblem::Write(e.into()))
+}
+
+fn encode(width: u32, height: u32, kind: png::ColorType, data: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(kind);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;

@@ -1,7 +1,11 @@
 //! `<emitter>` elements outside shapes.
 
-use nephroid::light::{EnvironmentMapping, Light, LightKind};
-use nephroid::math::Vec3;
+use std::f32::consts::PI;
+
+use nephroid::color::Rgb;
+use nephroid::light::{EnvironmentMapping, Light, LightKind, ProjectorUnit};
+use nephroid::math::{Affine2, Vec2, Vec3};
+use nephroid::texture::{BitmapFilter, Pixmap, Texture};
 
 use super::document::Element;
 use super::names::{EMITTERS, EMITTERS_LATER};
@@ -9,6 +13,9 @@ use super::properties::Plugin;
 use super::reader::Reader;
 use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
+
+/// Half of the angle of the spot that stands for a beam.
+const BEAM_DEG: f32 = 0.1;
 
 impl<'t> Reader<'t> {
     /// Reads an `<emitter>` into the scene; what is wrong goes to the log.
@@ -23,6 +30,12 @@ impl<'t> Reader<'t> {
                 radiance: self.color_property(&plugin, "radiance", 1.0, Role::Emission),
             }),
             "envmap" => self.environment(&plugin),
+            "projector" => self.projector(&plugin),
+            "sky" | "sun" | "sunsky" => {
+                self.daylight(&plugin);
+                return;
+            }
+            "collimated" => Some(self.collimated(&plugin)),
             "area" => {
                 let message =
                     Diagnostic::error(plugin.location(), "an \"area\" emitter belongs inside a shape");
@@ -100,6 +113,62 @@ impl<'t> Reader<'t> {
         plugin.ignore(&["mis_compensation"]);
         let image = self.image_property(plugin, false)?;
         Some(LightKind::Environment { image, mapping: EnvironmentMapping::Equirectangular, scale, to_world })
+    }
+
+    /// An image thrown by a pinhole. `irradiance` is Mitsuba's: what a white screen shows, and so 1/π of ours.
+    fn projector(&mut self, plugin: &Plugin<'t>) -> Option<LightKind> {
+        let to_world = plugin.transform("to_world");
+        let scale = plugin.float("scale", 1.0) * PI;
+        let (fov_deg, fov_axis, offset) = self.opening(plugin);
+        if offset != Vec2::ZERO {
+            self.log.warn(plugin.location(), "the principal point of a projector is the middle of its image");
+        }
+        let texture = self.texture_property(plugin, "irradiance", 1.0, Role::Emission);
+        let image = match &self.textures.list[texture] {
+            Texture::Bitmap(bitmap) => {
+                if bitmap.to_uv != Affine2::IDENTITY || bitmap.filter == BitmapFilter::Nearest {
+                    let message = "a projector shows its image whole, and linear between pixels";
+                    self.log.warn(plugin.location(), message);
+                }
+                bitmap.image
+            }
+            Texture::Constant(value) => {
+                let image = Pixmap::filled(1, 1, *value);
+                self.origins.images.push(plugin.location().clone());
+                self.textures.images.push(image)
+            }
+            _ => {
+                self.log.error(plugin.location(), "a projector shows a \"bitmap\" or one colour");
+                return None;
+            }
+        };
+        let scale = Rgb::splat(scale);
+        Some(LightKind::Projector {
+            to_world,
+            image,
+            scale,
+            unit: ProjectorUnit::Irradiance,
+            fov_deg,
+            fov_axis,
+        })
+    }
+
+    /// A beam without width, as a narrow spot of the same power.
+    fn collimated(&mut self, plugin: &Plugin<'t>) -> LightKind {
+        let message = format!("a beam without width cannot be rendered; a spot of {BEAM_DEG}° stands for it");
+        self.log.warn(plugin.location(), message);
+        let name = if plugin.has("power") { "power" } else { "irradiance" };
+        let power = self.color_property(plugin, name, 1.0, Role::Emission);
+        let half = 0.5 * BEAM_DEG.to_radians();
+        // 2π (1 − cos θ) = 4π sin² θ/2, and the angle is its own sine.
+        let solid_angle = 4.0 * PI * half * half;
+        LightKind::Spot {
+            to_world: plugin.transform("to_world"),
+            intensity: power * (1.0 / solid_angle),
+            cutoff_deg: BEAM_DEG,
+            beam_width_deg: BEAM_DEG,
+            texture: None,
+        }
     }
 
     fn not_both(&self, plugin: &Plugin, one: &'static str, other: &'static str) {

@@ -2,45 +2,14 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::material::{Material, Metal};
+use nephroid::material::Material;
 use nephroid::texture::Texture;
 
 use super::document::Element;
-use super::metals::{Known, metal, names};
-use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
+use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::Role;
-use super::value::Value;
-use crate::diagnostic::Diagnostic;
-use crate::log::shortened;
-
-/// Indices of refraction by name, at 589 nm and room temperature (Hecht, Optics, 4th edition).
-const IORS: [(&str, f32); 23] = [
-    ("vacuum", 1.0),
-    ("helium", 1.000_036),
-    ("hydrogen", 1.000_132),
-    ("air", 1.000_277),
-    ("carbon dioxide", 1.000_45),
-    ("water", 1.333),
-    ("acetone", 1.36),
-    ("ethanol", 1.361),
-    ("carbon tetrachloride", 1.461),
-    ("glycerol", 1.472_9),
-    ("benzene", 1.501),
-    ("silicone oil", 1.520_45),
-    ("bromine", 1.661),
-    ("water ice", 1.31),
-    ("fused quartz", 1.458),
-    ("pyrex", 1.47),
-    ("acrylic glass", 1.49),
-    ("polypropylene", 1.49),
-    ("bk7", 1.504_6),
-    ("sodium chloride", 1.544),
-    ("amber", 1.55),
-    ("pet", 1.575),
-    ("diamond", 2.419),
-];
 
 impl<'t> Reader<'t> {
     /// A `<bsdf>`, read once however often it is referred to. `None` if the log says why.
@@ -63,27 +32,45 @@ impl<'t> Reader<'t> {
     fn new_material(&mut self, element: &'t Element) -> Option<Handle<Material>> {
         let plugin = self.plugin(element);
         let material = match plugin.kind {
+            "twosided" => return self.two_sided(&plugin),
+            "mask" => return self.mask(&plugin),
+            "blendbsdf" => return self.blend(&plugin),
+            "mixturebsdf" => return self.mixture(&plugin),
+            "bumpmap" | "normalmap" => return self.tilted(&plugin),
+            "coating" | "roughcoating" => return self.coating(&plugin),
+            "ward" => return Some(self.ward(&plugin)),
+            "principledthin" => {
+                let handle = self.principled_thin(&plugin);
+                plugin.finish();
+                return Some(handle);
+            }
             "diffuse" => Material::Diffuse { reflectance: self.reflectance(&plugin, "reflectance", 0.5) },
             "phong" => Material::Phong {
                 diffuse_reflectance: self.reflectance(&plugin, "diffuse_reflectance", 0.5),
                 specular_reflectance: self.reflectance(&plugin, "specular_reflectance", 0.2),
                 exponent: plugin.float("exponent", 30.0),
             },
-            "conductor" => self.conductor(&plugin),
-            "dielectric" => self.dielectric(&plugin),
-            "thindielectric" => match self.dielectric(&plugin) {
-                Material::Dielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance } => {
-                    Material::ThinDielectric {
-                        int_ior,
-                        ext_ior,
-                        specular_reflectance,
-                        specular_transmittance,
-                    }
-                }
-                other => other,
+            "difftrans" => Material::DiffuseTransmission {
+                reflectance: self.store_texture(plugin.location(), Texture::Constant(Rgb::BLACK)),
+                transmittance: self.reflectance(&plugin, "transmittance", 0.5),
             },
-            "twosided" => return self.two_sided(&plugin),
-            "mask" => return self.mask(&plugin),
+            "conductor" => Material::Conductor {
+                metal: self.metal(&plugin),
+                specular_reflectance: self.reflectance(&plugin, "specular_reflectance", 1.0),
+            },
+            "roughconductor" => Material::RoughConductor {
+                metal: self.metal(&plugin),
+                specular_reflectance: self.reflectance(&plugin, "specular_reflectance", 1.0),
+                roughness: self.roughness(&plugin),
+            },
+            "dielectric" | "thindielectric" | "roughdielectric" => {
+                let glass = self.dielectric(&plugin);
+                let handle = self.store_glass(&plugin, glass);
+                plugin.finish();
+                return Some(handle);
+            }
+            "plastic" | "roughplastic" | "pplastic" => self.plastic(&plugin),
+            "principled" => self.principled(&plugin),
             "null" => Material::Null,
             _ => return self.nearest_material(&plugin),
         };
@@ -91,7 +78,7 @@ impl<'t> Reader<'t> {
         Some(self.store(&plugin, material))
     }
 
-    fn store(&mut self, plugin: &Plugin<'t>, material: Material) -> Handle<Material> {
+    pub(super) fn store(&mut self, plugin: &Plugin<'t>, material: Material) -> Handle<Material> {
         self.origins.materials.push(plugin.location().clone());
         self.materials.push(material)
     }
@@ -112,150 +99,49 @@ impl<'t> Reader<'t> {
         self.texture_property(plugin, name, default, Role::Reflectance)
     }
 
-    fn conductor(&mut self, plugin: &Plugin<'t>) -> Material {
-        Material::Conductor {
-            metal: self.metal(plugin),
-            specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0),
-        }
-    }
-
-    fn metal(&mut self, plugin: &Plugin<'t>) -> Metal {
-        let material = plugin.text("material");
-        if plugin.has("eta") || plugin.has("k") {
-            if let Some((_, at)) = material.filter(|(name, _)| *name != "none") {
-                self.log.error(at, "give either \"material\" or \"eta\" and \"k\"");
-            }
-            return Metal::Index {
-                eta: self.color_property(plugin, "eta", 0.0, Role::Index),
-                k: self.color_property(plugin, "k", 1.0, Role::Index),
-            };
-        }
-        plugin.ignore(&["eta", "k"]);
-        let Some((name, at)) = material.filter(|(name, _)| !name.eq_ignore_ascii_case("none")) else {
-            return Metal::PerfectMirror;
-        };
-        match metal(name) {
-            Some(Known::Index(eta, k)) => return Metal::Index { eta, k },
-            Some(Known::Name) => {
-                let message = format!("metal \"{name}\" cannot be rendered yet; it becomes a perfect mirror");
-                self.log
-                    .push(Diagnostic::warning(at, message).hint("give \"eta\" and \"k\" to have its colour"));
-            }
-            None => {
-                let message = format!("unknown metal \"{}\"", shortened(name));
-                self.log.push(Diagnostic::error(at, message).did_you_mean(name, names()));
-            }
-        }
-        Metal::PerfectMirror
-    }
-
     fn dielectric(&mut self, plugin: &Plugin<'t>) -> Material {
-        Material::Dielectric {
-            int_ior: self.ior(plugin, "int_ior", "bk7"),
-            ext_ior: self.ior(plugin, "ext_ior", "air"),
-            specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0),
-            specular_transmittance: self.reflectance(plugin, "specular_transmittance", 1.0),
-        }
-    }
-
-    /// An index of refraction: a number, or the name of a medium.
-    fn ior(&self, plugin: &Plugin<'t>, name: &'static str, default: &str) -> f32 {
-        let by_name = |wanted: &str| IORS.iter().find(|(known, _)| known.eq_ignore_ascii_case(wanted));
-        let default = by_name(default).map_or(1.0, |(_, value)| *value);
-        let Some(property) = plugin.property(name) else { return default };
-        let value = match property.value {
-            Value::Text(text) => match by_name(text) {
-                Some((_, value)) => *value,
-                None => {
-                    let message =
-                        format!("nothing with a known index of refraction is called \"{}\"", shortened(text));
-                    let known = IORS.iter().map(|(name, _)| *name);
-                    self.log.push(Diagnostic::error(&property.location, message).did_you_mean(text, known));
-                    default
-                }
+        let int_ior = self.ior(plugin, "int_ior", "bk7");
+        let ext_ior = self.ior(plugin, "ext_ior", "air");
+        let specular_reflectance = self.reflectance(plugin, "specular_reflectance", 1.0);
+        let specular_transmittance = self.reflectance(plugin, "specular_transmittance", 1.0);
+        match plugin.kind {
+            "dielectric" => {
+                Material::Dielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance }
+            }
+            "thindielectric" => {
+                Material::ThinDielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance }
+            }
+            _ => Material::RoughDielectric {
+                int_ior,
+                ext_ior,
+                specular_reflectance,
+                specular_transmittance,
+                roughness: self.roughness(plugin),
             },
-            Value::Float(v) => v as f32,
-            Value::Integer(v) => v as f32,
-            _ => {
-                plugin.wrong_type(property, "a float or the name of a medium");
-                default
-            }
-        };
-        if value > 0.0 {
-            return value;
         }
-        self.log.error(&property.location, format!("\"{name}\" must be above zero, not {value}"));
-        default
     }
 
-    fn two_sided(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Material>> {
-        plugin.ignore(&["allow_transmission"]);
-        let nested: Vec<_> = plugin.objects("bsdf").into_iter().map(|(_, element)| element).collect();
-        plugin.finish();
-        if nested.is_empty() || nested.len() > 2 {
-            let message = format!("\"twosided\" takes one or two materials, not {}", nested.len());
-            self.log.error(plugin.location(), message);
-            return None;
+    fn plastic(&mut self, plugin: &Plugin<'t>) -> Material {
+        if plugin.kind == "pplastic" {
+            self.stands_for(plugin, "\"roughplastic\"");
         }
-        let mut sides = Vec::new();
-        for element in &nested {
-            let handle = self.material(element)?;
-            match self.materials[handle] {
-                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => {
-                    let message = "\"twosided\" takes no material that light passes through";
-                    self.log.error(&element.location, message);
-                    return None;
-                }
-                Material::Mask { .. } => {
-                    let message = Diagnostic::error(
-                        &element.location,
-                        "\"twosided\" takes no material that light passes through",
-                    );
-                    self.log.push(message.hint("put the \"twosided\" into the \"mask\""));
-                    return None;
-                }
-                Material::TwoSided { front, back } => sides.push([front, back][sides.len()]),
-                _ => sides.push(handle),
-            }
+        Material::Plastic {
+            int_ior: self.ior(plugin, "int_ior", "polypropylene"),
+            ext_ior: self.ior(plugin, "ext_ior", "air"),
+            diffuse_reflectance: self.reflectance(plugin, "diffuse_reflectance", 0.5),
+            specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0),
+            nonlinear: plugin.boolean("nonlinear", false),
+            roughness: (plugin.kind != "plastic").then(|| self.roughness(plugin)),
         }
-        let (front, back) = (sides[0], sides[sides.len() - 1]);
-        Some(self.store(plugin, Material::TwoSided { front, back }))
-    }
-
-    fn mask(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Material>> {
-        let opacity = self.texture_property(plugin, "opacity", 0.5, Role::Reflectance);
-        let nested: Vec<_> = plugin.objects("bsdf").into_iter().map(|(_, element)| element).collect();
-        plugin.finish();
-        let [inside] = nested[..] else {
-            let message = format!("\"mask\" takes one material, not {}", nested.len());
-            self.log.error(plugin.location(), message);
-            return None;
-        };
-        let inside = self.material(inside)?;
-        Some(self.store(plugin, Material::Mask { opacity, inside }))
     }
 
     /// The nearest material that can be rendered to one that cannot yet.
     fn nearest_material(&mut self, plugin: &Plugin<'t>) -> Option<Handle<Material>> {
-        let nested: Vec<_> = plugin.objects("bsdf").into_iter().map(|(_, element)| element).collect();
         let (material, nearest) = match plugin.kind {
-            "roughconductor" => (self.conductor(plugin), "a smooth conductor"),
-            "roughdielectric" => (self.dielectric(plugin), "a smooth dielectric"),
             kind if BSDFS_LIKE_DIFFUSE.contains(&kind) => (self.like_diffuse(plugin), "diffuse"),
             kind if BSDFS_LIKE_NULL.contains(&kind) => (Material::Null, "nothing"),
-            kind if BSDFS_WRAPPING.contains(&kind) => {
-                self.stands_for(plugin, "the material in it");
-                plugin.finish_approximated();
-                let Some(first) = nested.first() else {
-                    self.log.error(plugin.location(), format!("\"{kind}\" needs a material in it"));
-                    return None;
-                };
-                return self.material(first);
-            }
             _ => {
-                let rough = ["roughconductor", "roughdielectric"];
-                let known = [BSDFS, &rough, BSDFS_WRAPPING, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL];
-                self.unknown_kind(plugin, &known);
+                self.unknown_kind(plugin, &[BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL]);
                 return None;
             }
         };
@@ -264,7 +150,7 @@ impl<'t> Reader<'t> {
         Some(self.store(plugin, material))
     }
 
-    fn stands_for(&self, plugin: &Plugin, nearest: &str) {
+    pub(super) fn stands_for(&self, plugin: &Plugin, nearest: &str) {
         let message = format!("bsdf \"{}\" cannot be rendered yet; {nearest} stands for it", plugin.kind);
         self.log.warn(plugin.location(), message);
     }

@@ -7,10 +7,14 @@
 
 mod boundary;
 mod cie1931;
+mod daylight;
+mod dispersion;
 mod document;
 mod emitter;
 mod group;
 mod integrator;
+mod ior;
+mod layered;
 mod legacy;
 mod material;
 mod medium;
@@ -19,8 +23,10 @@ mod names;
 mod number;
 mod open;
 mod parameters;
+mod principled;
 mod properties;
 mod reader;
+mod roughness;
 mod sensor;
 mod shape;
 mod spectrum;

@@ -26,34 +26,36 @@ pub(super) const PROPERTY_NAMES: &[&str] = &[
     "B", "C", "S", "accel", "albedo", "allow_thread_reordering", "allow_transmission", "alpha",
     "alpha_sample", "alpha_u", "alpha_v", "ambient", "anisotropic", "aovs", "aperture_radius",
     "azimuthal_roughness", "banner", "base_color", "beam_width", "bitmap", "block_size", "bsdf",
-    "bsdf_samples", "center", "centers", "clearcoat", "clearcoat_gloss", "clearcoat_sampling_rate", "color",
-    "color0", "color1", "compensate", "complex_sun", "component_format", "crop_height", "crop_offset_x",
-    "crop_offset_y", "crop_width", "cutoff_angle", "data", "day", "delta", "diff_trans",
-    "diffuse_reflectance", "diffuse_reflectance_sampling_rate", "diffuse_transmittance_sampling_rate",
-    "direction", "distribution", "emission", "emitter", "emitter_samples", "end_day", "end_month",
-    "end_year", "eta", "eumelanin", "exponent", "ext_eta", "ext_ior", "extent", "exterior", "face_normals",
-    "far_clip", "file_format", "filename", "filter_type", "flatness", "flip_invalid_normals",
-    "flip_normals", "flip_tex_coords", "focal_length", "focus_distance", "format", "fov", "fov_axis", "g",
-    "gamma", "grid", "guiding", "guiding_proj", "guiding_rounds", "has_spectral_extinction", "height",
-    "hide_emitters", "high_quality_edges", "hour", "int_ior", "intensity", "interior", "irradiance",
-    "jitter", "k", "latitude", "left_handed", "lobes", "longitude", "longitudinal_roughness",
-    "main_specular_sampling_rate", "majorant_factor", "majorant_grid", "majorant_resolution_factor",
-    "material", "max_depth", "max_value", "medium", "metallic", "method", "minute", "mis_compensation",
-    "month", "near_clip", "nested_bsdf", "nonlinear", "normalmap", "normals", "opacity", "origin", "p0",
-    "p1", "pheomelanin", "pixel_format", "polarizing", "position", "principal_point_offset_x",
-    "principal_point_offset_y", "priority", "project_seed", "quaternions", "radiance", "radius", "raw",
-    "reflectance", "roughness", "rr_depth", "sample_border", "sample_count", "sample_emitters",
-    "sample_visible", "samples_per_pass", "sampling_weight", "scale", "scale_factor", "scale_tilt",
-    "scales", "second", "seed", "shading_samples", "shape_index", "sheen", "sheen_tint", "shutter_close",
-    "shutter_open", "sigma_a", "sigma_s", "sigma_t", "silhouette_sampling_weight", "size", "sky_scale",
-    "spec_tint", "spec_trans", "specular", "specular_reflectance", "specular_reflectance_sampling_rate",
+    "bsdf_samples", "cache", "center", "centers", "channel", "clearcoat", "clearcoat_gloss",
+    "clearcoat_sampling_rate", "color", "color0", "color1", "compensate", "complex_sun", "component_format",
+    "crop_height", "crop_offset_x", "crop_offset_y", "crop_width", "cutoff_angle", "data", "day", "delta",
+    "diff_trans", "diffuse_reflectance", "diffuse_reflectance_sampling_rate",
+    "diffuse_transmittance_sampling_rate", "direction", "distribution", "emission", "emitter",
+    "emitter_samples", "end_day", "end_month", "end_year", "eta", "eumelanin", "exponent", "ext_eta",
+    "ext_ior", "extent", "exterior", "face_normals", "far_clip", "file_format", "filename", "filter_type",
+    "flatness", "flip_invalid_normals", "flip_normals", "flip_tex_coords", "focal_length", "focus_distance",
+    "format", "fov", "fov_axis", "g", "gamma", "grid", "guiding", "guiding_proj", "guiding_rounds",
+    "has_spectral_extinction", "height", "hide_emitters", "high_quality_edges", "hour", "int_ior",
+    "intensity", "interior", "irradiance", "jitter", "k", "latitude", "left_handed", "line_width", "lobes",
+    "longitude", "longitudinal_roughness", "main_specular_sampling_rate", "majorant_factor",
+    "majorant_grid", "majorant_resolution_factor", "material", "max_anisotropy", "max_depth", "max_value",
+    "medium", "metallic", "method", "minute", "mis_compensation", "month", "near_clip", "nested_bsdf",
+    "nonlinear", "normalmap", "normals", "opacity", "origin", "p0", "p1", "pheomelanin", "pixel_format",
+    "polarizing", "position", "power", "principal_point_offset_x", "principal_point_offset_y", "priority",
+    "project_seed", "quaternions", "radiance", "radius", "raw", "reflectance", "resolution", "roughness",
+    "rr_depth", "sample_border", "sample_count", "sample_emitters", "sample_visible", "samples_per_pass",
+    "samples_per_pixel", "sampling_weight", "scale", "scale_factor", "scale_tilt", "scales", "second",
+    "seed", "shading_samples", "shape_index", "sheen", "sheen_tint", "shutter_close", "shutter_open",
+    "sigma_a", "sigma_s", "sigma_t", "silhouette_sampling_weight", "size", "sky_scale", "spec_tint",
+    "spec_trans", "specular", "specular_reflectance", "specular_reflectance_sampling_rate",
     "specular_sampling_weight", "specular_transmittance", "specular_transmittance_sampling_rate", "sppc",
     "sppi", "sppp", "srf", "srgb_primitives", "start_day", "start_month", "start_year", "stddev",
-    "step_size", "strength", "sun_aperture", "sun_direction", "sun_scale", "target", "temperature",
-    "texture", "theta", "timeout", "timezone", "to_uv", "to_world", "transmittance", "turbidity",
-    "unbounded", "uoffset", "uscale", "use_grid_bbox", "use_shadowing_function", "use_spectral_mis",
-    "value", "values", "voffset", "volume", "vscale", "wavelength", "wavelength_max", "wavelength_min",
-    "wavelengths", "weight", "width", "window_end_time", "window_start_time", "wrap_mode", "year",
+    "step_size", "strength", "stretch", "sun_aperture", "sun_direction", "sun_radius_scale", "sun_scale", "target",
+    "temperature", "texture", "theta", "thickness", "timeout", "timezone", "to_uv", "to_world",
+    "transmittance", "turbidity", "unbounded", "uoffset", "uscale", "use_grid_bbox",
+    "use_shadowing_function", "use_spectral_mis", "value", "values", "variant", "voffset", "volume",
+    "vscale", "wavelength", "wavelength_max", "wavelength_min", "wavelengths", "weight", "weights", "width",
+    "window_end_time", "window_start_time", "wrap_mode", "wrap_mode_u", "wrap_mode_v", "year",
 ];
 
 /// Whether some plugin has a property of this name.
@@ -87,41 +89,68 @@ pub(super) const SHAPES_LATER: &[&str] = &[
     "blender",
 ];
 
-pub(super) const BSDFS: &[&str] =
-    &["diffuse", "phong", "conductor", "dielectric", "thindielectric", "twosided", "mask", "null"];
-
-/// Those whose nearest simple material is one of their nested ones.
-pub(super) const BSDFS_WRAPPING: &[&str] =
-    &["bumpmap", "normalmap", "blendbsdf", "coating", "roughcoating", "mixturebsdf"];
-
-/// Those whose nearest simple material is diffuse.
-pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] = &[
+pub(super) const BSDFS: &[&str] = &[
+    "diffuse",
+    "phong",
+    "conductor",
+    "roughconductor",
+    "dielectric",
+    "thindielectric",
+    "roughdielectric",
     "plastic",
     "roughplastic",
     "pplastic",
     "principled",
     "principledthin",
-    "roughdiffuse",
-    "ward",
+    "twosided",
+    "mask",
+    "blendbsdf",
+    "mixturebsdf",
+    "bumpmap",
+    "normalmap",
+    "coating",
+    "roughcoating",
     "difftrans",
-    "hk",
-    "irawan",
-    "measured",
-    "measured_polarized",
-    "hair",
+    "ward",
+    "null",
 ];
+
+/// Those whose nearest simple material is diffuse.
+pub(super) const BSDFS_LIKE_DIFFUSE: &[&str] =
+    &["roughdiffuse", "hk", "irawan", "measured", "measured_polarized", "hair"];
 
 /// Those that filter polarised light.
 pub(super) const BSDFS_LIKE_NULL: &[&str] = &["polarizer", "retarder", "circular"];
 
-pub(super) const EMITTERS: &[&str] = &["point", "area", "spot", "directional", "constant", "envmap"];
+pub(super) const EMITTERS: &[&str] = &[
+    "point",
+    "area",
+    "spot",
+    "directional",
+    "constant",
+    "envmap",
+    "projector",
+    "sky",
+    "sun",
+    "sunsky",
+    "collimated",
+];
 
-pub(super) const EMITTERS_LATER: &[&str] =
-    &["sunsky", "sun", "sky", "timed_sunsky", "projector", "collimated", "directionalarea"];
+pub(super) const EMITTERS_LATER: &[&str] = &["timed_sunsky", "ies"];
 
-pub(super) const TEXTURES: &[&str] = &["bitmap", "checkerboard"];
+pub(super) const TEXTURES: &[&str] = &[
+    "bitmap",
+    "ldrtexture",
+    "checkerboard",
+    "mesh_attribute",
+    "vertexcolors",
+    "scale",
+    "rawconstant",
+    "uniform",
+    "srgb",
+];
 
-pub(super) const TEXTURES_LATER: &[&str] = &["mesh_attribute", "volume", "gridtexture", "scale", "wireframe"];
+pub(super) const TEXTURES_LATER: &[&str] = &["volume", "gridtexture", "wireframe", "curvature", "d65"];
 
 pub(super) const MEDIA: &[&str] = &["homogeneous", "heterogeneous"];
 
@@ -134,7 +163,7 @@ pub(super) const PHASES: &[&str] = &["isotropic", "hg", "rayleigh"];
 pub(super) const PHASES_LATER: &[&str] =
     &["microflake", "sggx", "blendphase", "mixturephase", "tabphase", "tabphase_irregular", "kkay"];
 
-pub(super) const SPECTRA_LATER: &[&str] = &["blackbody", "regular", "irregular", "rawconstant", "srgb"];
+pub(super) const SPECTRA_LATER: &[&str] = &["blackbody", "regular", "irregular"];
 
 #[cfg(test)]
 mod tests {

@@ -5,12 +5,14 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Location, Source};
 use crate::log::Log;
+use crate::sandbox::OutsideSandbox;
 use crate::vfs::Files;
 
 /// Bytes of XML in one scene.
 pub(super) const MAX_BYTES: usize = 256 << 20;
 
-/// The path and bytes of a file named in a scene: an absolute one, or the first in the folders.
+/// The path and bytes of a file named in a scene: an absolute one, or the first in the folders that may be
+/// read.
 pub(super) fn find(
     files: &dyn Files,
     folders: &[PathBuf],
@@ -23,6 +25,7 @@ pub(super) fn find(
     if name.contains('\0') {
         return Err(Error::new(ErrorKind::InvalidInput, "the name holds a zero byte"));
     }
+    let mut refused = None;
     for folder in folders {
         // Scenes made on Windows write backslashes.
         for spelling in [name.to_string(), name.replace('\\', "/")] {
@@ -30,9 +33,14 @@ pub(super) fn find(
             match files.read(&path) {
                 Ok(bytes) => return Ok((path, bytes)),
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
+                // It may stand in a folder that is not refused.
+                Err(error) if OutsideSandbox::is(&error) => refused = Some(error),
                 Err(error) => return Err(error),
             }
         }
+    }
+    if let Some(error) = refused {
+        return Err(error);
     }
     let first = folders.first().map_or(Path::new(""), PathBuf::as_path);
     let first = if first.as_os_str().is_empty() { Path::new(".") } else { first };

@@ -1,6 +1,6 @@
 //! The state while a document becomes a scene, and what all its parts need.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use nephroid::handle::{Arena, Handle};
@@ -59,6 +59,8 @@ pub(super) struct Reader<'t> {
     pub(super) texture_of: BTreeMap<usize, Outcome<Texture>>,
     pub(super) material_of: BTreeMap<usize, Outcome<Material>>,
     pub(super) group_of: BTreeMap<usize, Outcome<Group>>,
+    /// Groups that others show, by number.
+    pub(super) nested_groups: BTreeSet<usize>,
     pub(super) medium_of: BTreeMap<usize, Outcome<Medium>>,
     pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Pixmap>>,
     pub(super) mesh_of: BTreeMap<MeshKey, Handle<Mesh>>,
@@ -96,6 +98,7 @@ impl<'t> Reader<'t> {
             texture_of: BTreeMap::new(),
             material_of: BTreeMap::new(),
             group_of: BTreeMap::new(),
+            nested_groups: BTreeSet::new(),
             medium_of: BTreeMap::new(),
             image_of: BTreeMap::new(),
             mesh_of: BTreeMap::new(),

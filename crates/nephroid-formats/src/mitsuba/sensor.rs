@@ -95,6 +95,12 @@ impl<'t> Reader<'t> {
     }
 
     fn perspective(&self, plugin: &Plugin<'t>) -> Projection {
+        let (fov_deg, fov_axis, principal_point_offset) = self.opening(plugin);
+        Projection::Perspective { fov_deg, fov_axis, principal_point_offset }
+    }
+
+    /// The angle of a frustum, what it spans, and the offset of the principal point.
+    pub(super) fn opening(&self, plugin: &Plugin<'t>) -> (f32, FovAxis, Vec2) {
         let axes = [
             ("x", FovAxis::X),
             ("y", FovAxis::Y),
@@ -127,7 +133,7 @@ impl<'t> Reader<'t> {
             plugin.float("principal_point_offset_x", 0.0),
             plugin.float("principal_point_offset_y", 0.0),
         );
-        Projection::Perspective { fov_deg, fov_axis, principal_point_offset: offset }
+        (fov_deg, fov_axis, offset)
     }
 
     fn focal_length_mm(&self, plugin: &Plugin<'t>) -> f64 {

@@ -1,5 +1,8 @@
 //! `<shape>` elements.
 
+use std::f32::consts::FRAC_1_PI;
+
+use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::math::Vec3;
 use nephroid::medium::Boundary;
@@ -104,12 +107,20 @@ impl<'t> Reader<'t> {
     /// The radiance of an area emitter inside a shape, and the medium that its light starts in.
     fn emission(&mut self, shape: &Plugin<'t>, boundary: &mut Boundary) -> Option<Handle<Texture>> {
         let plugin = self.plugin(shape.only_object("emitter")?);
-        if plugin.kind != "area" {
+        if plugin.kind == "directionalarea" {
+            let message = "emitter \"directionalarea\" cannot be rendered yet; \"area\" of the same power stands for it";
+            self.log.warn(plugin.location(), message);
+        } else if plugin.kind != "area" {
             let message = format!("a shape's emitter must be \"area\", not \"{}\"", shortened(plugin.kind));
             self.log.error(plugin.location(), message);
             return None;
         }
-        let radiance = self.texture_property(&plugin, "radiance", 1.0, Role::Emission);
+        let mut radiance = self.texture_property(&plugin, "radiance", 1.0, Role::Emission);
+        if plugin.kind == "directionalarea" {
+            let a = radiance;
+            let b = self.store_texture(plugin.location(), Texture::Constant(Rgb::splat(FRAC_1_PI)));
+            radiance = self.store_texture(plugin.location(), Texture::Scale { a, b });
+        }
         boundary.light = self.surroundings(&plugin);
         plugin.ignore(&["sampling_weight"]);
         plugin.finish();

@@ -11,7 +11,7 @@ use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
 use super::spectrum::{Role, Spectrum};
 use super::value::{Property, Value};
-use crate::diagnostic::Location;
+use crate::diagnostic::{Diagnostic, Location};
 use crate::image::read_texture;
 use crate::log::shortened;
 
@@ -78,7 +78,7 @@ impl<'t> Reader<'t> {
                 Some(spectrum) => self.spectrum_color(&spectrum, role, property),
                 None => Rgb::splat(default),
             },
-            Value::Object(element) if element.tag == "spectrum" => self.spectrum_plugin(element),
+            Value::Object(element) if element.tag == "spectrum" => self.spectrum_plugin(element, role),
             Value::Object(element) if element.tag == "texture" => {
                 return match self.texture(element) {
                     Some(texture) => Paint::Varied(texture),
@@ -113,11 +113,12 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// `<spectrum type="…">`: the two kinds that are one colour by themselves.
-    fn spectrum_plugin(&mut self, element: &'t Element) -> Rgb {
+    /// `<spectrum type="…">`: the kinds that are one colour by themselves.
+    fn spectrum_plugin(&mut self, element: &'t Element, role: Role) -> Rgb {
         let plugin = self.plugin(element);
         let color = match plugin.kind {
-            "uniform" => self.color_property(&plugin, "value", 1.0, Role::Reflectance),
+            "uniform" | "rawconstant" => self.color_property(&plugin, "value", 1.0, role),
+            "srgb" => self.color_property(&plugin, "color", 1.0, role),
             "d65" => {
                 let color = self.color_property(&plugin, "color", 1.0, Role::Reflectance);
                 color * plugin.float("scale", 1.0)
@@ -127,7 +128,7 @@ impl<'t> Reader<'t> {
                 return Rgb::splat(0.5);
             }
             _ => {
-                self.unknown_kind(&plugin, &[&["uniform", "d65"], SPECTRA_LATER]);
+                self.unknown_kind(&plugin, &[&["uniform", "d65", "rawconstant", "srgb"], SPECTRA_LATER]);
                 return Rgb::splat(0.5);
             }
         };
@@ -156,13 +157,20 @@ impl<'t> Reader<'t> {
     fn new_texture(&mut self, element: &'t Element) -> Option<Texture> {
         let plugin = self.plugin(element);
         let texture = match plugin.kind {
-            "bitmap" => self.bitmap(&plugin)?,
+            "bitmap" | "ldrtexture" => self.bitmap(&plugin)?,
             "checkerboard" => {
                 let color0 = self.texture_property(&plugin, "color0", 0.4, Role::Reflectance);
                 let color1 = self.texture_property(&plugin, "color1", 0.2, Role::Reflectance);
                 let to_uv = flat_transform(&plugin.transform("to_uv"));
                 Texture::Checkerboard(Checkerboard { color0, color1, to_uv })
             }
+            "mesh_attribute" => self.mesh_attribute(&plugin),
+            "vertexcolors" => Texture::VertexColor,
+            "scale" => self.scaled(&plugin)?,
+            "rawconstant" | "uniform" => {
+                Texture::Constant(self.color_property(&plugin, "value", 1.0, Role::Index))
+            }
+            "srgb" => Texture::Constant(self.color_property(&plugin, "color", 1.0, Role::Index)),
             kind if TEXTURES_LATER.contains(&kind) => {
                 let message =
                     format!("texture \"{kind}\" cannot be rendered yet; it becomes plain grey (0.5)");
@@ -180,15 +188,111 @@ impl<'t> Reader<'t> {
     }
 
     fn bitmap(&mut self, plugin: &Plugin<'t>) -> Option<Texture> {
-        let raw = plugin.boolean("raw", false);
-        let filters = [("bilinear", BitmapFilter::Bilinear), ("nearest", BitmapFilter::Nearest)];
+        let raw = plugin.boolean("raw", false) || self.is_linear(plugin);
+        let filters = [
+            ("bilinear", BitmapFilter::Bilinear),
+            ("nearest", BitmapFilter::Nearest),
+            // Those of older versions, which differ far away only.
+            ("trilinear", BitmapFilter::Bilinear),
+            ("ewa", BitmapFilter::Bilinear),
+        ];
         let filter = plugin.choice("filter_type", BitmapFilter::Bilinear, &filters);
-        let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
-        let wrap = plugin.choice("wrap_mode", Wrap::Repeat, &wraps);
+        let wrap = self.wrap(plugin);
         let to_uv = flat_transform(&plugin.transform("to_uv"));
-        plugin.ignore(&["accel", "format"]);
+        plugin.ignore(&["accel", "format", "cache", "max_anisotropy"]);
         let image = self.image_property(plugin, raw)?;
-        Some(Texture::Bitmap(Bitmap { image, filter, wrap, to_uv }))
+        let bitmap = Texture::Bitmap(Bitmap { image, filter, wrap, to_uv });
+        let Some((name, at)) = plugin.text("channel") else { return Some(bitmap) };
+        let channels = [("r", 0), ("g", 1), ("b", 2), ("a", 3), ("x", 0), ("y", 1), ("z", 2)];
+        match channels.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
+            Some((_, channel)) => {
+                let of = self.store_texture(plugin.location(), bitmap);
+                Some(Texture::Channel { of, channel: *channel })
+            }
+            None => {
+                let message = format!("unknown channel \"{}\"", shortened(name));
+                self.log.push(Diagnostic::error(at, message).hint("one of r, g, b, a"));
+                None
+            }
+        }
+    }
+
+    /// Whether an old `gamma` says that the numbers of the file are to be taken as they are.
+    fn is_linear(&self, plugin: &Plugin<'t>) -> bool {
+        let Some(gamma) = plugin.optional_float("gamma") else { return false };
+        // Nothing but one and the curve of sRGB can be had; the latter is close to 2.2, and -1 asks for it.
+        if let Some(property) =
+            plugin.property("gamma").filter(|_| gamma > 0.0 && gamma != 1.0 && gamma != 2.2)
+        {
+            self.log.warn(&property.location, format!("the curve of sRGB stands for a gamma of {gamma}"));
+        }
+        gamma == 1.0
+    }
+
+    fn wrap(&self, plugin: &Plugin<'t>) -> Wrap {
+        let wraps = [
+            ("repeat", Wrap::Repeat),
+            ("mirror", Wrap::Mirror),
+            ("clamp", Wrap::Clamp),
+            ("zero", Wrap::Black),
+            ("black", Wrap::Black),
+        ];
+        let mut wrap = plugin.choice("wrap_mode", Wrap::Repeat, &wraps);
+        let [u, v] = ["wrap_mode_u", "wrap_mode_v"].map(|name| {
+            let given = plugin.has(name).then(|| plugin.choice(name, wrap, &wraps));
+            given.inspect(|_| plugin.ignore(&[name]))
+        });
+        if let Some(u) = u {
+            wrap = u;
+        }
+        if let (Some(property), Some(v)) = (plugin.property("wrap_mode_v"), v)
+            && v != wrap
+        {
+            let message = "an image is continued alike in both directions: this one does not count";
+            self.log.warn(&property.location, message);
+        }
+        wrap
+    }
+
+    /// An attribute of vertices: colours alone are kept.
+    fn mesh_attribute(&mut self, plugin: &Plugin<'t>) -> Texture {
+        let name = plugin.text("name");
+        let scale = plugin.float("scale", 1.0);
+        let color = match name {
+            Some((name, _)) if name == "vertex_color" => Texture::VertexColor,
+            Some((name, at)) => {
+                let message = format!(
+                    "only \"vertex_color\" is read of meshes; \"{}\" is plain grey (0.5)",
+                    shortened(name)
+                );
+                self.log.warn(at, message);
+                Texture::Constant(Rgb::splat(0.5))
+            }
+            None => {
+                self.log.error(plugin.location(), "\"mesh_attribute\" lacks its \"name\"");
+                Texture::Constant(Rgb::splat(0.5))
+            }
+        };
+        if scale == 1.0 {
+            return color;
+        }
+        let a = self.store_texture(plugin.location(), color);
+        let b = self.store_texture(plugin.location(), Texture::Constant(Rgb::splat(scale)));
+        Texture::Scale { a, b }
+    }
+
+    /// A texture times a number or a colour.
+    fn scaled(&mut self, plugin: &Plugin<'t>) -> Option<Texture> {
+        let nested = plugin.objects("texture");
+        let [(_, element)] = nested[..] else {
+            let message = format!("\"scale\" takes one texture, not {}", nested.len());
+            self.log.error(plugin.location(), message);
+            return None;
+        };
+        let b = self.color_property(plugin, "scale", 1.0, Role::Index);
+        let a = self.texture(element)?;
+        let b = self.store_texture(plugin.location(), Texture::Constant(b));
+        Some(Texture::Scale { a, b })
     }
 
     /// The image that a plugin's `filename` names, read once for each way of decoding.
