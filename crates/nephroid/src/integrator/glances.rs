@@ -3,7 +3,7 @@
 use super::{LightPart, Probe};
 use crate::color::Rgb;
 use crate::light::Emitter;
-use crate::material::{Transport, segments_by};
+use crate::material::{LobeKind, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::sampling::Sampler;
 use crate::transport::{PixelSample, survival};
@@ -104,7 +104,7 @@ impl Way {
                 (self.ray, self.inside) = pass(-wo);
                 continue;
             }
-            if !bsdf.is_dirac() {
+            if !bsdf.has(LobeKind::Dirac) {
                 break;
             }
             let mut branches = bsdf.dirac_lobes(wo, Transport::Radiance).map(|lobe| {

@@ -242,6 +242,11 @@ impl Camera<'_> {
         }
         walk.throughput = carried / q;
         if next.is_dirac() {
+            if !bsdf.is_dirac() {
+                // What else the surface does ends here; for the way on it is a mirror.
+                walk.scattered -= 1;
+                walk.trail.is_specular_after_all();
+            }
             walk.specular = true;
             walk.trail.turn(1.0, 1.0);
         } else {

@@ -122,6 +122,13 @@ impl Trail {
         }
     }
 
+    /// Makes the last vertex a specular one: the way on is one of its Dirac lobes.
+    pub fn is_specular_after_all(&mut self) {
+        if let Some(last) = self.nodes.last_mut() {
+            last.kind = Kind::Specular;
+        }
+    }
+
     /// Takes a direction from the last vertex with a density, and the opposite way that of the reverse.
     pub fn turn(&mut self, leaving: f32, reverse: f32) {
         self.leaving = leaving;

@@ -228,7 +228,10 @@ impl Walked<'_> {
     fn bounce(&mut self, lit: &Lit<'_>, bounce: &Bounce) -> bool {
         if bounce.dirac {
             let (place, position) = self.place(lit);
-            if !self.arrive(place, position, Kind::Specular) {
+            if lit.has_density() {
+                // It has landed there.
+                self.trail.is_specular_after_all();
+            } else if !self.arrive(place, position, Kind::Specular) {
                 return false;
             }
             self.trail.turn(1.0, 1.0);
