@@ -1,5 +1,7 @@
 //! Numbers of [`plastic_coat`](super::plastic_coat), which a test there works out anew.
 
+#![expect(clippy::approx_constant, reason = "measured numbers that happen to be near one")]
+
 /// Indices of refraction that the tables are of.
 pub(super) const INDICES: [f32; 5] = [1.1, 1.3, 1.5, 1.8, 2.4];
 
