@@ -92,6 +92,7 @@ impl Zoo {
         let plain = Principled::plain(&mut self.textures);
         let (white, half, most) = (self.grey(1.0), self.grey(0.5), self.grey(0.8));
         let red = self.textures.constant(Rgb::new(0.8, 0.2, 0.1));
+        let paint = Principled { base_color: white, clearcoat: white, ..plain };
         let cloth = Principled {
             base_color: white,
             roughness: most,
@@ -112,6 +113,7 @@ impl Zoo {
         let glass = Principled { base_color: red, spec_trans: most, clearcoat: half, ..plain };
         for (name, parts, principled) in [
             ("opaque principled", 10, plain),
+            ("opaque paint", 24, paint),
             ("opaque cloth", 10, cloth),
             ("opaque car", 24, car),
             ("stained glass", 24, glass),
