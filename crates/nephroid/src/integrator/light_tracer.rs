@@ -7,7 +7,7 @@
 use super::{Components, Estimator, LightPart, Met, PictureSums, Probe};
 use crate::color::Rgb;
 use crate::film::PixelSum;
-use crate::material::{Transport, segments_by};
+use crate::material::{LobeKind, Transport, segments_by};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
 use crate::transport::{CameraPass, LightPass, PixelSample, Splats, effort, light_pass, survival};
@@ -158,7 +158,9 @@ impl Estimator for LightTracer<'_> {
                 continue;
             }
             probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
-            if !bsdf.is_dirac() {
+            // The rest is light paths'.
+            let bsdf = bsdf.part(LobeKind::Dirac);
+            if bsdf.is_black() {
                 break;
             }
             let s = &mut sample.sampler;

@@ -137,14 +137,13 @@ fn radiance<P: Probe>(
             continue;
         }
         probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: so_far.scattered == 0 });
-        if !bsdf.is_dirac() {
-            so_far.scattered += 1;
-            if fits(depth + 1) {
-                let lit = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside };
-                let direct = throughput * lights(world, config, &lit, sample);
-                let part = so_far.part(Last::Sampled { from: Asker::on(&hit.point), pdf_solid_angle: 1.0 });
-                book(&mut out, part, direct, probe);
-            }
+        let scattered_here = SoFar { scattered: so_far.scattered + 1, ..so_far };
+        if !bsdf.is_dirac() && fits(depth + 1) {
+            let lit = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside };
+            let direct = throughput * lights(world, config, &lit, sample);
+            let part =
+                scattered_here.part(Last::Sampled { from: Asker::on(&hit.point), pdf_solid_angle: 1.0 });
+            book(&mut out, part, direct, probe);
         }
         let s = &mut sample.sampler;
         let (u, u_lobe, u_survive) = (s.next_2d(), s.next_1d(), s.next_1d());
@@ -159,6 +158,7 @@ fn radiance<P: Probe>(
         last = if scattered.is_dirac() {
             Last::Certain
         } else {
+            so_far = scattered_here;
             Last::Sampled { from: Asker::on(&hit.point), pdf_solid_angle: scattered.pdf_solid_angle }
         };
         inside = world.cross(inside, &hit, ray.direction, scattered.wi);

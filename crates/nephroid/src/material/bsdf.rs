@@ -1,8 +1,11 @@
+use std::f32::consts::PI;
+
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::fresnel::mirror;
-use super::kind::LobeKind;
+use super::kind::{Classes, LobeKind};
 use super::lambertian::Lambertian;
+use super::mixture::{self, Blend, Chances, Weighed};
 use super::phong::Phong;
 use super::split::Split;
 use crate::color::Rgb;
@@ -20,6 +23,18 @@ pub enum Transport {
     Flux,
 }
 
+impl Transport {
+    /// The value of a refraction that is f for radiance carried from an index of `eta`, relative to that where it comes
+    /// to, which is adjoint for power.
+    #[inline]
+    pub(super) fn of_refraction(self, f: f32, eta: f32) -> f32 {
+        match self {
+            Self::Radiance => f,
+            Self::Flux => f * eta * eta,
+        }
+    }
+}
+
 /// A direction drawn by [`Bsdf::sample`], or one of [`Bsdf::dirac_lobes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
@@ -32,7 +47,7 @@ pub struct BsdfSample {
     /// media, (η_o/η_i)²; 1 but for refracted radiance. Roulette must leave it out: it is undone
     /// where the path comes out of the medium.
     pub radiance_scale: f32,
-    /// The density of `wi` per solid angle; 0 for a Dirac lobe, which has none.
+    /// The density of `wi` per solid angle among all lobes that have one, whichever was drawn; 0 for a Dirac lobe.
     pub pdf_solid_angle: f32,
     /// The class of the lobe that was drawn.
     pub lobe: LobeKind,
@@ -78,9 +93,12 @@ pub struct Bsdf {
     frame: Frame,
     lobes: Lobes,
     disperses: bool,
+    /// Those classes of a mixture's lobes that count.
+    among: Classes,
 }
 
 /// The kinds of scattering; one file each.
+#[expect(clippy::large_enum_variant, reason = "a value is copied where it is made, and without allocation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lobes {
     Black,
@@ -90,16 +108,39 @@ pub(super) enum Lobes {
     Conductor(Conductor),
     Dielectric(Dielectric),
     ThinDielectric(Dielectric),
+    One(Weighed),
+    Blend(Blend),
+}
+
+impl Lobes {
+    /// What mixtures are made of; nothing of simple ones.
+    #[inline]
+    fn parts(&self) -> &[Weighed] {
+        match self {
+            Self::One(one) => std::slice::from_ref(one),
+            Self::Blend(blend) => blend.parts(),
+            _ => &[],
+        }
+    }
 }
 
 impl Bsdf {
     pub(super) fn new(ng: Vec3, frame: Frame, lobes: Lobes) -> Self {
-        Self { ng, frame, lobes, disperses: false }
+        let among = match &lobes {
+            Lobes::Black => Classes::NONE,
+            Lobes::Diffuse(_) => Classes::DIFFUSE,
+            Lobes::Phong(phong) => {
+                mixture::Scatter::classes(phong).into_iter().fold(Classes::NONE, Classes::or)
+            }
+            Lobes::One(_) | Lobes::Blend(_) => mixture::classes(lobes.parts()),
+            _ => Classes::DIRAC,
+        };
+        Self { ng, frame, lobes, among, disperses: false }
     }
 
     /// The same place with no surface.
     pub(crate) fn nulled(self) -> Self {
-        Self { lobes: Lobes::Null, ..self }
+        Self { lobes: Lobes::Null, among: Classes::DIRAC, ..self }
     }
 
     /// The same, the boundary of two dielectrics with another index of refraction on the inner side relative to the
@@ -107,6 +148,10 @@ impl Bsdf {
     pub(crate) fn with_eta(self, eta: f32) -> Self {
         match self.lobes {
             Lobes::Dielectric(own) => Self { lobes: Lobes::Dielectric(Dielectric { eta, ..own }), ..self },
+            Lobes::One(own) => {
+                let lobes = Lobes::One(Weighed { part: own.part.with_eta(eta), ..own });
+                Self::new(self.ng, self.frame, lobes)
+            }
             _ => self,
         }
     }
@@ -125,7 +170,7 @@ impl Bsdf {
     /// Whether all scattering is in Dirac lobes, so that there is no density to estimate here.
     #[inline]
     pub fn is_dirac(&self) -> bool {
-        !matches!(self.lobes, Lobes::Black | Lobes::Diffuse(_) | Lobes::Phong(_))
+        self.among == Classes::DIRAC
     }
 
     /// Whether light passes as if there were no surface.
@@ -143,21 +188,33 @@ impl Bsdf {
     /// Whether there are lobes of a class.
     #[inline]
     pub fn has(&self, kind: LobeKind) -> bool {
-        match kind {
-            LobeKind::Dirac => self.is_dirac(),
-            LobeKind::Sharp => false,
-            LobeKind::Broad => !self.is_dirac() && !self.is_black(),
-        }
+        self.among.meets(Classes::of(kind))
     }
 
     /// The lobes of one class alone. The three parts add up to the whole.
     pub fn part(&self, kind: LobeKind) -> Self {
-        if self.has(kind) { *self } else { Self { lobes: Lobes::Black, ..*self } }
+        self.of(Classes::of(kind))
+    }
+
+    /// The lobes of some classes alone.
+    fn of(&self, classes: Classes) -> Self {
+        let among = self.among.and(classes);
+        let lobes = match self.lobes {
+            _ if among.is_none() => Lobes::Black,
+            Lobes::Phong(phong) if among == Classes::DIFFUSE => {
+                Lobes::Diffuse(Lambertian { albedo: phong.diffuse })
+            }
+            Lobes::Phong(phong) if among == Classes::GLOSSY => {
+                Lobes::Phong(Phong { diffuse: Rgb::BLACK, ..phong })
+            }
+            lobes => lobes,
+        };
+        Self { lobes, among, ..*self }
     }
 
     /// All lobes but the broad ones.
     pub fn without_broad(&self) -> Self {
-        if self.has(LobeKind::Broad) { Self { lobes: Lobes::Black, ..*self } } else { *self }
+        self.of(Classes::DIRAC.or(Classes::SHARP))
     }
 
     /// Whether there are lobes that are too narrow for a density to be estimated from photons.
@@ -169,47 +226,53 @@ impl Bsdf {
     /// Whether [`eval`](Self::eval) may be above zero for directions on opposite sides.
     #[inline]
     pub fn transmits(&self) -> bool {
-        false
+        self.among.meets(Classes::DENSE)
+            && self.lobes.parts().iter().any(|w| mixture::Scatter::transmits(&w.part))
     }
 
-    /// Whether there is a Phong lobe of a weight above zero.
+    /// Whether there are lobes with a density that are brighter about some direction.
     #[inline]
     pub fn has_glossy_lobe(&self) -> bool {
-        !self.glossy_albedo().is_black()
+        self.among.meets(Classes::SHARP.or(Classes::GLOSSY))
     }
 
-    /// The albedo of the Lambertian lobe.
+    /// The albedo of the Lambertian lobe; of what else is alike in all directions about that.
     #[inline]
     pub fn diffuse_albedo(&self) -> Rgb {
         match &self.lobes {
             Lobes::Diffuse(lambertian) => lambertian.albedo,
             Lobes::Phong(phong) => phong.diffuse,
+            Lobes::One(_) | Lobes::Blend(_) => {
+                let among = self.among.and(Classes::DIFFUSE);
+                mixture::eval(self.lobes.parts(), among, Vec3::Z, Vec3::Z, Transport::Radiance) * PI
+            }
             _ => Rgb::BLACK,
         }
     }
 
-    /// The weight of the Phong lobe: the most it reflects, which it does at normal incidence.
+    /// The weight of the Phong lobe: the most it reflects, which it does at normal incidence. Of other lobes that are
+    /// brighter about some direction about that.
     #[inline]
     pub fn glossy_albedo(&self) -> Rgb {
-        if let Lobes::Phong(phong) = &self.lobes { phong.specular } else { Rgb::BLACK }
-    }
-
-    /// The Lambertian lobe alone. With [`glossy_part`](Self::glossy_part) it adds up to the whole.
-    pub fn diffuse_part(&self) -> Self {
-        let albedo = self.diffuse_albedo();
-        let lobes = if albedo.is_black() { Lobes::Black } else { Lobes::Diffuse(Lambertian { albedo }) };
-        Self { lobes, ..*self }
-    }
-
-    /// The Phong lobe alone.
-    pub fn glossy_part(&self) -> Self {
-        let lobes = match self.lobes {
-            Lobes::Phong(phong) if !phong.specular.is_black() => {
-                Lobes::Phong(Phong { diffuse: Rgb::BLACK, ..phong })
+        match &self.lobes {
+            Lobes::Phong(phong) => phong.specular,
+            Lobes::One(_) | Lobes::Blend(_) => {
+                let glossy = Classes::SHARP.or(Classes::GLOSSY);
+                Rgb::splat(mixture::share(self.lobes.parts(), self.among.and(glossy), Vec3::Z).min(1.0))
             }
-            _ => Lobes::Black,
-        };
-        Self { lobes, ..*self }
+            _ => Rgb::BLACK,
+        }
+    }
+
+    /// The lobes that are much the same in all directions. With [`glossy_part`](Self::glossy_part) they add up to all
+    /// that have a density.
+    pub fn diffuse_part(&self) -> Self {
+        self.of(Classes::DIFFUSE)
+    }
+
+    /// The lobes with a density that are brighter about some direction.
+    pub fn glossy_part(&self) -> Self {
+        self.of(Classes::SHARP.or(Classes::GLOSSY))
     }
 
     /// The cosine to the shading normal that [`eval`](Self::eval) leaves out.
@@ -218,16 +281,42 @@ impl Bsdf {
         w.dot(self.frame.n).abs()
     }
 
-    /// f(wo, wi) in 1/sr, without a cosine and without Dirac lobes. It is symmetric, whatever is
-    /// carried; a connection of a photon's path multiplies it by
-    /// [`adjoint_factor`](Self::adjoint_factor).
+    /// f(wo, wi) in 1/sr, without a cosine and without Dirac lobes, for radiance that comes from `wi` and is seen from
+    /// `wo`. It is symmetric but for refraction, of which f(wo, wi) η_i² is, η_i the index on the side of `wi`.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         match &self.lobes {
             Lobes::Diffuse(lambertian) if self.both_above(wo, wi) => lambertian.eval(),
             Lobes::Phong(phong) if self.both_above(wo, wi) => phong.eval(self.frame.n, wo, wi),
+            Lobes::One(_) | Lobes::Blend(_) => self.eval_mixture(wo, wi, Transport::Radiance),
             _ => Rgb::BLACK,
         }
+    }
+
+    /// The same for power that comes from `wo` and leaves along `wi`: f(wi, wo). A connection of a photon's path
+    /// multiplies it by [`adjoint_factor`](Self::adjoint_factor).
+    #[inline]
+    pub fn eval_flux(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        match &self.lobes {
+            Lobes::One(_) | Lobes::Blend(_) => self.eval_mixture(wo, wi, Transport::Flux),
+            _ => self.eval(wo, wi),
+        }
+    }
+
+    fn eval_mixture(&self, wo: Vec3, wi: Vec3, transport: Transport) -> Rgb {
+        match (self.local(wo), self.local(wi)) {
+            (Some(o), Some(i)) => {
+                mixture::eval(self.lobes.parts(), self.among.and(Classes::DENSE), o, i, transport)
+            }
+            _ => Rgb::BLACK,
+        }
+    }
+
+    /// A direction in the shading frame; `None` between the two tangent planes.
+    #[inline]
+    fn local(&self, w: Vec3) -> Option<Vec3> {
+        let local = self.frame.to_local(w);
+        (local.z * w.dot(self.ng) > 0.0).then_some(local)
     }
 
     /// The density per solid angle with which [`sample`](Self::sample) returns `wi`, without Dirac
@@ -237,8 +326,18 @@ impl Bsdf {
         match &self.lobes {
             Lobes::Diffuse(_) if self.both_above(wo, wi) => Lambertian::pdf(self.frame.n, wi),
             Lobes::Phong(phong) if self.both_above(wo, wi) => phong.pdf(self.frame.n, wo, wi),
+            Lobes::One(_) | Lobes::Blend(_) => self.pdf_of_mixture(wo, wi),
             _ => 0.0,
         }
+    }
+
+    fn pdf_of_mixture(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let (Some(o), Some(i)) = (self.local(wo), self.local(wi)) else { return 0.0 };
+        let parts = self.lobes.parts();
+        Chances::new(parts, self.among, o).map_or(0.0, |chances| {
+            chances.pdf(parts, Classes::of(LobeKind::Sharp), o, i)
+                + chances.pdf(parts, Classes::of(LobeKind::Broad), o, i)
+        })
     }
 
     /// Draws a direction from uniform numbers in [0, 1), `u_lobe` choosing between lobes. `None` where
@@ -248,6 +347,7 @@ impl Bsdf {
         let wi = match &self.lobes {
             Lobes::Diffuse(lambertian) => return self.sample_diffuse(lambertian, wo, u, transport),
             Lobes::Phong(phong) => phong.sample(&self.frame, wo, u, u_lobe),
+            Lobes::One(_) | Lobes::Blend(_) => return self.sample_mixture(wo, u, u_lobe, transport),
             _ => return self.sample_dirac(wo, u_lobe, transport),
         };
         let wi = wi.normalize();
@@ -279,6 +379,40 @@ impl Bsdf {
         let weight = lambertian.albedo * self.carried(wo, wi, transport);
         let (lobe, transmitted) = (LobeKind::Broad, false);
         Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, lobe, transmitted })
+    }
+
+    /// A class is chosen first, in proportion to what it scatters, and then a direction by that class alone: its f·cos
+    /// over its own density is the weight.
+    fn sample_mixture(&self, wo: Vec3, u: Vec2, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {
+        let parts = self.lobes.parts();
+        let Some(o) = self.local(wo) else {
+            // Only what goes straight on is there.
+            return self.sample_dirac(wo, u_lobe, transport);
+        };
+        let chances = Chances::new(parts, self.among, o)?;
+        let drawn = chances.draw(u_lobe);
+        if drawn.class == Classes::DIRAC {
+            let chance = chances.of_classes(Classes::DIRAC);
+            let sample = self.sample_dirac(wo, drawn.u_lobe, transport)?;
+            return Some(BsdfSample { weight: sample.weight / chance, ..sample });
+        }
+        let wi = self.frame.to_world(drawn.sample(parts, o, u)?).normalize();
+        let i = self.local(wi)?;
+        let lobe = drawn.class.kind();
+        let [sharp, broad] =
+            [LobeKind::Sharp, LobeKind::Broad].map(|kind| chances.pdf(parts, Classes::of(kind), o, i));
+        let own = if lobe == LobeKind::Sharp { sharp } else { broad };
+        let f = mixture::eval(parts, self.among.and(Classes::of(lobe)), o, i, transport);
+        if !(own > 0.0 && own.is_finite()) || f.is_black() {
+            return None;
+        }
+        let weight = f * (self.cosine(wi) / own * self.carried(wo, wi, transport));
+        let radiance_scale = match transport {
+            Transport::Radiance => drawn.radiance_scale(parts, o, i),
+            Transport::Flux => 1.0,
+        };
+        let transmitted = o.z * i.z < 0.0;
+        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: sharp + broad, lobe, transmitted })
     }
 
     /// The Dirac lobes, reflection first and then transmission, each with its full weight: following
@@ -340,8 +474,19 @@ impl Bsdf {
             Lobes::Conductor(conductor) if outside => Some(conductor.split(wo.dot(n))),
             Lobes::Dielectric(dielectric) => Some(dielectric.split(wo, n, outside)),
             Lobes::ThinDielectric(thin) => Some(thin.split_thin(wo, wo.dot(n))),
+            Lobes::One(_) | Lobes::Blend(_) if self.among.meets(Classes::DIRAC) => self.split_mixture(wo),
             _ => None,
         }
+    }
+
+    fn split_mixture(&self, wo: Vec3) -> Option<Split> {
+        let local = self.frame.to_local(wo);
+        let mut split = mixture::split(self.lobes.parts(), local)?;
+        if let Some(refraction) = &mut split.refraction {
+            let straight = refraction.wi == -local;
+            refraction.wi = if straight { -wo } else { self.frame.to_world(refraction.wi).normalize() };
+        }
+        Some(split)
     }
 
     fn sample_dirac(&self, wo: Vec3, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {

@@ -13,10 +13,15 @@ pub struct Conductor {
 impl Conductor {
     /// `cos_o` is the cosine of `wo` to the normal.
     pub fn split(&self, cos_o: f32) -> Split {
-        let fresnel = match self.metal {
-            Metal::PerfectMirror => Rgb::WHITE,
-            Metal::Index { eta, k } => fresnel_conductor(cos_o, eta, k),
-        };
+        let fresnel = metal_reflectance(&self.metal, cos_o);
         Split { reflectance: fresnel * self.reflectance, refraction: None, reflect_probability: 1.0 }
+    }
+}
+
+/// What a metal reflects of light that comes with this cosine to its normal.
+pub(super) fn metal_reflectance(metal: &Metal, cos_o: f32) -> Rgb {
+    match metal {
+        Metal::PerfectMirror => Rgb::WHITE,
+        Metal::Index { eta, k } => fresnel_conductor(cos_o, *eta, *k),
     }
 }

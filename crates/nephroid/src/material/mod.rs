@@ -3,21 +3,38 @@
 //! A [`Material`] is what the scene says; [`Material::at`] reads its textures at a hit and gives a
 //! [`Bsdf`], a small value of plain numbers that estimators evaluate as often as they like.
 
+mod albedo;
+mod albedo_tables;
 mod at;
 mod bsdf;
+mod charlie;
 mod check;
+mod coated_conductor;
 mod conductor;
 mod dielectric;
+mod diffuse_transmission;
+mod disney;
+mod disney_diffuse;
 mod dispersion;
 mod fresnel;
+mod gltf;
 mod kind;
 mod lambertian;
 mod mask;
 mod metallic_roughness;
+mod microfacet;
+mod mixture;
 mod nature;
+mod part;
 mod phong;
+mod plastic;
+mod plastic_coat;
+mod plastic_tables;
 mod principled;
+mod rough_conductor;
+mod rough_dielectric;
 mod roughness;
+mod simple;
 mod split;
 mod surface;
 mod tilt;

@@ -25,6 +25,11 @@ pub struct Refraction {
 }
 
 impl Split {
+    /// A mirror.
+    pub fn mirror(reflectance: Rgb) -> Self {
+        Self { reflectance, refraction: None, reflect_probability: 1.0 }
+    }
+
     /// Everything passes straight on.
     pub fn pass(wo: Vec3, transmittance: Rgb) -> Self {
         let refraction = Some(Refraction { wi: -wo, transmittance, radiance_scale: 1.0 });

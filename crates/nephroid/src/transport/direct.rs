@@ -92,7 +92,9 @@ impl<'a> Lit<'a> {
     /// What is scattered towards `wi` of each watt that comes along `wo`, per solid angle, on a path from a light.
     pub fn spread(&self, wi: Vec3) -> Rgb {
         match self.scatterer {
-            Scatterer::Surface { bsdf, .. } => self.eval(wi) * bsdf.adjoint_factor(self.wo, wi),
+            Scatterer::Surface { bsdf, .. } => {
+                bsdf.eval_flux(self.wo, wi) * (bsdf.cosine(wi) * bsdf.adjoint_factor(self.wo, wi))
+            }
             Scatterer::Medium { .. } => self.eval(wi),
         }
     }

@@ -20,7 +20,7 @@ fn smooth_albedo(bsdf: &Bsdf, axis: &Frame, wo: Vec3) -> [f64; 3] {
 fn white_furnace() {
     for_each(|_, case, place, wo, bsdf| {
         // Shading normals do not conserve energy, and nobody asks them to.
-        if !place.flat {
+        if !place.flat || case.rich {
             return;
         }
         let mut total = smooth_albedo(&bsdf, &place.surface.frame, wo);

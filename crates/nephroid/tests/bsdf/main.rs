@@ -6,6 +6,8 @@
 mod check;
 mod conventions;
 mod energy;
+mod rich;
+mod rich_zoo;
 mod sampling;
 mod sides;
 mod statistics;

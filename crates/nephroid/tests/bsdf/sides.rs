@@ -14,9 +14,11 @@ fn reflection_and_transmission_are_by_the_geometric_normal() {
         for _ in 0..300 {
             let wi = anywhere(&mut rng);
             if wo.dot(ng) * wi.dot(ng) < 0.0 {
-                assert!(bsdf.eval(wo, wi).is_black() && bsdf.pdf(wo, wi) == 0.0, "{} leaks", case.name);
+                let nothing = bsdf.eval(wo, wi).is_black() && bsdf.pdf(wo, wi) == 0.0;
+                assert!(nothing || bsdf.transmits(), "{} leaks", case.name);
             }
-            assert_eq!(bsdf.pdf(wo, wi) > 0.0, !bsdf.eval(wo, wi).is_black(), "{}", case.name);
+            let (found, there) = (bsdf.pdf(wo, wi) > 0.0, !bsdf.eval(wo, wi).is_black());
+            assert!(found == there || (case.rich && !there), "{} from {wo} to {wi}", case.name);
             for transport in [Transport::Radiance, Transport::Flux] {
                 let Some(sample) = bsdf.sample(wo, rng.square(), rng.next(), transport) else { continue };
                 let crossed = wo.dot(ng) * sample.wi.dot(ng) < 0.0;
@@ -32,8 +34,9 @@ fn reflection_and_transmission_are_by_the_geometric_normal() {
 fn one_sided_materials_are_black_from_behind() {
     let zoo = Zoo::new();
     let one_sided = |name: &str| {
-        ["diffuse", "phong", "mirror", "gold"].iter().any(|start| name.contains(start))
+        ["diffuse", "phong", "mirror", "gold", "plastic", "opaque"].iter().any(|start| name.contains(start))
             && !name.contains("before")
+            && !name.contains("leaf")
     };
     for case in &zoo.cases {
         for place in places() {

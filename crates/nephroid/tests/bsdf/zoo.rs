@@ -14,6 +14,10 @@ pub struct Case {
     pub material: Handle<Material>,
     /// Reflects and transmits all that arrives, on either side.
     pub lossless: bool,
+    /// Rough, layered or mixed: tests of their own look at what is dear to work out.
+    pub rich: bool,
+    /// Parts of a cell along each axis that integrals of rich ones need.
+    pub parts: usize,
 }
 
 /// A surface and whether it is shaded with its own normal.
@@ -35,6 +39,7 @@ impl Zoo {
         zoo.add_opaque();
         zoo.add_transparent();
         zoo.add_two_sided();
+        zoo.add_rich();
         zoo
     }
 
@@ -120,7 +125,7 @@ impl Zoo {
         self.add("phong under a mask", Material::Mask { opacity, inside: phong });
     }
 
-    fn grey(&mut self, value: f32) -> Handle<Texture> {
+    pub fn grey(&mut self, value: f32) -> Handle<Texture> {
         self.textures.constant(Rgb::splat(value))
     }
 
@@ -130,7 +135,12 @@ impl Zoo {
 
     fn add_lossless(&mut self, name: &'static str, material: Material, lossless: bool) {
         let material = self.materials.push(material);
-        self.cases.push(Case { name, material, lossless });
+        self.cases.push(Case { name, material, lossless, rich: false, parts: 24 });
+    }
+
+    pub fn add_rich_case(&mut self, name: &'static str, parts: usize, material: Material) {
+        let material = self.materials.push(material);
+        self.cases.push(Case { name, material, lossless: false, rich: true, parts });
     }
 
     pub fn bsdf(&self, case: &Case, surface: &Surface, wo: Vec3) -> Bsdf {
@@ -140,25 +150,27 @@ impl Zoo {
     /// The index of refraction on the side of `w`; one where the material says nothing of it.
     pub fn index(&self, case: &Case, surface: &Surface, w: Vec3) -> f32 {
         match self.materials[Material::unmasked(&self.materials, case.material)] {
-            Material::Dielectric { int_ior, .. } if w.dot(surface.ng) < 0.0 => int_ior,
-            Material::Dielectric { ext_ior, .. } => ext_ior,
+            Material::Dielectric { int_ior, .. } | Material::RoughDielectric { int_ior, .. }
+                if w.dot(surface.ng) < 0.0 =>
+            {
+                int_ior
+            }
+            Material::Dielectric { ext_ior, .. } | Material::RoughDielectric { ext_ior, .. } => ext_ior,
             _ => 1.0,
         }
     }
 }
 
 /// A surface with its own normal, one that leans a little and one that leans a lot.
-pub fn places() -> Vec<Place> {
+pub fn places() -> [Place; 3] {
     let ng = Vec3::new(0.3, -0.5, 0.7).normalize();
     let frame = Frame::from_normal(ng);
-    [0.0f32, 0.2, 0.7]
-        .map(|tilt| {
-            let (sin, cos) = real::sin_cos(tilt);
-            let n = frame.to_world(Vec3::new(0.6 * sin, 0.8 * sin, cos)).normalize();
-            let surface = Surface::new(ng, n, Vec2::ZERO);
-            Place { surface, flat: tilt == 0.0 }
-        })
-        .into()
+    [0.0f32, 0.2, 0.7].map(|tilt| {
+        let (sin, cos) = real::sin_cos(tilt);
+        let n = frame.to_world(Vec3::new(0.6 * sin, 0.8 * sin, cos)).normalize();
+        let surface = Surface::new(ng, n, Vec2::ZERO);
+        Place { surface, flat: tilt == 0.0 }
+    })
 }
 
 /// Directions on both sides of a surface: along the normal, at grazing incidence and between.
@@ -204,10 +216,19 @@ fn the_zoo_has_every_material() {
         Material::TwoSided { .. } => 5,
         Material::Null => 6,
         Material::Mask { .. } => 7,
-        Material::Dispersive { .. } => 8,
-        _ => 9,
+        Material::RoughConductor { .. } => 8,
+        Material::RoughDielectric { .. } => 9,
+        Material::Plastic { .. } => 10,
+        Material::CoatedConductor { .. } => 11,
+        Material::DiffuseTransmission { .. } => 12,
+        Material::Principled(_) => 13,
+        Material::MetallicRoughness(_) => 14,
+        Material::Blend { .. } => 15,
+        Material::NormalMap { .. } => 16,
+        Material::BumpMap { .. } => 17,
+        Material::Dispersive { .. } => 18,
     };
-    for wanted in 0..=8 {
+    for wanted in 0..=18 {
         assert!(zoo.cases.iter().any(|case| kind(&zoo.materials[case.material]) == wanted), "{wanted}");
     }
 }

@@ -244,6 +244,7 @@ impl Camera<'_> {
         walk.throughput = carried / q;
         if next.is_dirac() {
             walk.specular = true;
+            // What other lobes the surface has end here; for the way on it is a mirror.
             walk.scattered -= u32::from(!bsdf.is_dirac());
             walk.trail.turn_specular();
         } else {

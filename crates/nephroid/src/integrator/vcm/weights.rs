@@ -92,7 +92,7 @@ impl Whole<'_> {
     pub fn kind(&self, i: usize) -> Kind {
         let light = self.light.len();
         match self.light.get(i) {
-            // Where the light path ends for this path it scatters, though it may have gone on by a Dirac lobe.
+            // What is connected or merged there is its density, though the light path went on by a Dirac lobe.
             Some(Node { kind: Kind::Specular, .. }) if i + 1 == light => Kind::Surface,
             Some(node) => node.kind,
             None => self.camera[self.len() - 1 - i].kind,
