@@ -412,7 +412,7 @@ mod tests {
     use crate::math::{Affine2, DVec3, Vec2, Vec3};
     use crate::medium::{Boundary, Grid, GridValues, Medium, Phase};
     use crate::shape::Group;
-    use crate::texture::{Bitmap, BitmapFilter, Textures, Wrap};
+    use crate::texture::{Bitmap, BitmapFilter, Plane, Textures, Wrap};
 
     fn empty() -> Scene {
         let projection = Projection::Perspective {
@@ -484,6 +484,59 @@ mod tests {
                 "a pixel of its light's texture is negative: light cannot be",
             ]
         );
+    }
+
+    /// A spot that shows a texture.
+    fn projector(texture: Handle<Texture>) -> Light {
+        let to_world = Transform::IDENTITY;
+        let (cutoff_deg, beam_width_deg, intensity) = (20.0, 15.0, Rgb::WHITE);
+        let texture = Some(texture);
+        let kind = LightKind::Spot { to_world, intensity, cutoff_deg, beam_width_deg, texture };
+        Light { name: "spot".into(), kind, medium: None }
+    }
+
+    #[test]
+    fn textures_of_lights_are_looked_through() {
+        let mut scene = empty();
+        let t = &mut scene.textures;
+        let (white, dark, own) =
+            (t.constant(Rgb::WHITE), t.constant(Rgb::splat(-1.0)), t.push(Texture::VertexColor));
+        let mix = t.push(Texture::Mix { weight: white, a: dark, b: own });
+        let of = t.push(Texture::Scale { a: white, b: mix });
+        let channel = t.push(Texture::Channel { of, channel: 2 });
+        scene.lights.push(projector(channel));
+        let found = messages(&scene);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(
+            found.iter().any(|m| m == "the colours of vertices cannot be light: give the light a bitmap")
+        );
+    }
+
+    #[test]
+    fn textures_that_make_no_sense_or_too_much_work_are_refused() {
+        let mut scene = empty();
+        let white = scene.textures.constant(Rgb::WHITE);
+        scene.textures.push(Texture::Channel { of: white, channel: 4 });
+        let later = scene.textures.clone().push(Texture::VertexColor);
+        scene.textures.push(Texture::Scale { a: white, b: later });
+        let image = Pixmap { alpha: Some(Plane::Bytes(vec![0; 3])), ..Pixmap::filled(1, 2, Rgb::WHITE) };
+        scene.textures.images.push(image);
+        assert_eq!(
+            messages(&scene),
+            [
+                "the image is empty or its size does not fit its pixels",
+                "its values must be finite, and what it refers to must come before it",
+                "its values must be finite, and what it refers to must come before it",
+            ]
+        );
+        // Twice as much work each time.
+        let mut scene = empty();
+        let mut last = scene.textures.constant(Rgb::WHITE);
+        for _ in 0..40 {
+            last = scene.textures.push(Texture::Scale { a: last, b: last });
+        }
+        scene.lights.push(projector(last));
+        assert!(messages(&scene)[0].starts_with("it asks 1023 textures for one colour"));
     }
 
     #[test]

@@ -311,6 +311,37 @@ fn a_thousand_instances_cost_one_mesh() {
     assert!(thousand < one + 1000 * 200, "{one} {thousand}");
 }
 
+/// A mesh that is shown at one place is moved there; at several, all but one get their own.
+#[test]
+fn meshes_are_in_memory_once_for_each_place() {
+    let at = |x: f64| Transform::translate(DVec3::new(x, 0.0, 0.0));
+    let turned = Transform::scale(DVec3::new(-1.0, 1.0, 1.0)).then(at(20.0));
+    for places in [
+        vec![at(10.0)],
+        vec![turned],
+        vec![at(10.0), turned],
+        vec![at(10.0), Transform::IDENTITY, turned],
+        vec![Transform::IDENTITY, at(10.0)],
+        vec![Transform::IDENTITY, Transform::IDENTITY],
+    ] {
+        let mut scene = empty();
+        let mesh = scene.meshes.push(ball(12));
+        scene.shapes = places.iter().map(|&p| shape(&scene, Geometry::Mesh(mesh), p)).collect();
+        let given = scene.clone();
+        let world = World::new(scene).expect("a sound scene");
+        let apart: Vec<_> = places.iter().filter(|&&p| p != Transform::IDENTITY).collect();
+        let still = usize::from(apart.len() < places.len());
+        assert_eq!(world.scene().meshes.len(), apart.len() + still);
+        assert_eq!(given.meshes.as_slice(), [ball(12)], "what was given is another scene");
+        for place in &places {
+            let center = place.point(Vec3::ZERO);
+            let ray = Ray::new(center + Vec3::new(0.1, -5.0, 0.2), Vec3::Y);
+            let hit = world.intersect(&ray).expect("a ball is there");
+            assert!(hit.point.position.distance(center) < 1.3 && hit.point.ng.y < 0.0);
+        }
+    }
+}
+
 #[test]
 fn groups_that_cannot_be_shown_are_refused() {
     let mut scene = empty();
