@@ -1,3 +1,4 @@
+use super::mixture::MOST_PARTS;
 use super::{Material, Metal, MetallicRoughness, Roughness};
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
@@ -73,6 +74,9 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
             problems.part("first", materials, material, *first);
             if first != second {
                 problems.part("second", materials, material, *second);
+            }
+            if problems.list.is_empty() {
+                problems.blend(materials, material);
             }
         }
         Material::NormalMap { normals: texture, scale, inside }
@@ -275,6 +279,34 @@ impl Problems<'_> {
             return true;
         }
         false
+    }
+
+    /// What is mixed altogether, blends of blends included.
+    fn blend(&mut self, materials: &Arena<Material>, blend: Handle<Material>) {
+        let (mut count, mut refracting, mut waiting) = (0, 0, vec![blend]);
+        while let Some(next) = waiting.pop() {
+            match &materials[next] {
+                Material::Blend { first, second, .. } => waiting.extend([*first, *second]),
+                Material::NormalMap { inside, .. } | Material::BumpMap { inside, .. } => {
+                    waiting.push(*inside);
+                }
+                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => {
+                    (count, refracting) = (count + 1, refracting + 1);
+                }
+                _ => count += 1,
+            }
+            if count > MOST_PARTS {
+                self.add(format!(
+                    "more than {MOST_PARTS} materials are blended; leave out those that weigh least"
+                ));
+                return;
+            }
+        }
+        if refracting > 1 {
+            self.add(
+                "two materials that are clear and smooth are blended, but light goes on in one way only",
+            );
+        }
     }
 
     fn part(

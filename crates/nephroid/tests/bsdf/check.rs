@@ -176,3 +176,26 @@ fn masks() {
         "inside refers to the material itself or a later one; store what it refers to first",
     );
 }
+
+#[test]
+fn blends() {
+    let mut w = Workshop::new();
+    let (white, over) = (w.textures.constant(Rgb::WHITE), w.textures.constant(Rgb::splat(1.5)));
+    let diffuse = w.accepts(Material::Diffuse { reflectance: white });
+    let of = |weight, first, second| Material::Blend { weight, first, second };
+    let pair = w.accepts(of(white, diffuse, diffuse));
+    let four = w.accepts(of(white, pair, pair));
+    w.rejects(of(over, diffuse, pair), "weight is 1.5, but must be between 0 and 1");
+    w.rejects(
+        of(white, diffuse, four),
+        "more than 4 materials are blended; leave out those that weigh least",
+    );
+    let null = w.accepts(Material::Null);
+    w.accepts(of(white, null, diffuse));
+    w.rejects(
+        of(white, null, null),
+        "two materials that are clear and smooth are blended, but light goes on in one way only",
+    );
+    let mask = w.accepts(Material::Mask { opacity: white, inside: diffuse });
+    w.rejects(of(white, mask, diffuse), "first is a mask; put the blend into the mask");
+}

@@ -196,3 +196,55 @@ fn the_classes_add_up() {
         }
     });
 }
+
+/// Little roughness reflects, and lets through, what none does.
+#[test]
+fn smooth_is_the_limit_of_rough() {
+    use nephroid::color::Rgb;
+    use nephroid::handle::Arena;
+    use nephroid::material::{Distribution, Material, Roughness, Surface};
+    use nephroid::math::Vec2;
+    use nephroid::texture::Textures;
+
+    let (mut textures, mut materials) = (Textures::default(), Arena::default());
+    let (white, alpha) = (textures.constant(Rgb::WHITE), textures.constant(Rgb::splat(1e-3)));
+    let roughness = Roughness::isotropic(Distribution::Beckmann, alpha);
+    let (int_ior, ext_ior) = (1.5, 1.0);
+    let (specular_reflectance, specular_transmittance) = (white, white);
+    let smooth = materials.push(Material::Dielectric {
+        int_ior,
+        ext_ior,
+        specular_reflectance,
+        specular_transmittance,
+    });
+    let rough = materials.push(Material::RoughDielectric {
+        int_ior,
+        ext_ior,
+        specular_reflectance,
+        specular_transmittance,
+        roughness,
+    });
+    let surface = Surface::flat(Vec3::Z, Vec2::ZERO);
+    let mut rng = Rng(12);
+    for wo in [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.3, -0.954), Vec3::new(0.0, 0.8, -0.6)] {
+        let wo = wo.normalize();
+        let bsdf = |material| Material::at(&materials, material, &textures, &surface, wo);
+        let (smooth, rough) = (bsdf(smooth), bsdf(rough));
+        assert!(rough.has(LobeKind::Sharp) && !rough.is_dirac());
+        for transport in [Transport::Radiance, Transport::Flux] {
+            let mut means = [0.0f32; 2];
+            const DRAWS: usize = 4000;
+            for i in 0..DRAWS {
+                let u_lobe = (i as f32 + 0.5) / DRAWS as f32;
+                if let Some(sample) = rough.sample(wo, rng.square(), u_lobe, transport) {
+                    means[usize::from(sample.transmitted)] += sample.weight.g / DRAWS as f32;
+                }
+            }
+            for (mean, lobe) in means.into_iter().zip(smooth.dirac_lobes(wo, transport)) {
+                let expected = lobe.map_or(0.0, |lobe| lobe.weight.g);
+                // Stratified: the share is off by a draw or two of weight up to 2.25, and Fresnel's share by a slope.
+                assert!((mean - expected).abs() < 3e-3, "{wo} {transport:?}: {mean} for {expected}");
+            }
+        }
+    }
+}
