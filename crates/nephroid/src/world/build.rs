@@ -38,7 +38,7 @@ impl World {
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let lookup = Lookup { meshes: &scenery.meshes, textures: &scene.textures };
+        let lookup = Lookup { meshes: scenery.meshes.as_slice(), textures: &scene.textures };
         let (emitters, lamps, emitter_of_shape) =
             emitters(&scene, pieces_of_lamps, lookup, Target { center, radius });
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
