@@ -29,7 +29,7 @@ pub struct OutsideSandbox {
 impl OutsideSandbox {
     /// Whether that is what an error says.
     pub fn is(error: &io::Error) -> bool {
-        error.get_ref().is_some_and(|inner| inner.is::<Self>())
+        error.get_ref().and_then(|inner| inner.downcast_ref::<Self>()).is_some()
     }
 }
 

@@ -627,10 +627,25 @@ fn broken_lights() {
 }
 
 #[test]
+fn files_of_another_kind() {
+    let camera = r#"<sensor type="perspective"/>"#;
+    let found = |content: &str| {
+        messages(&format!("<scene version=\"3.0.0\">{camera}\n{content}</scene>"), &Options::default())
+    };
+    let mesh = found(
+        r#"<shape type="serialized"><string name="filename" value="noply.ply"/><integer name="shape_index" value="1"/></shape>"#,
+    );
+    assert!(mesh.starts_with("s.xml:2:57: error: noply.ply: "), "{mesh}");
+    let lamp = found(r#"<emitter type="ies"><string name="filename" value="text.png"/></emitter>"#);
+    assert_eq!(lamp, "s.xml:2:52: error: text.png: no IES file: it has no line \"TILT=\"");
+    assert_eq!(found(r#"<emitter type="ies"/>"#), "s.xml:2:16: error: emitter \"ies\" lacks a filename");
+}
+
+#[test]
 fn what_cannot_be_rendered_yet() {
     check(
-        r#"<shape type="serialized"/>"#,
-        r#"s.xml:2:14: error: shape "serialized" cannot be rendered yet; --lenient leaves it out"#,
+        r#"<shape type="hair"/>"#,
+        r#"s.xml:2:14: error: shape "hair" cannot be rendered yet; --lenient leaves it out"#,
     );
     check(
         r#"<emitter type="timed_sunsky"/>"#,

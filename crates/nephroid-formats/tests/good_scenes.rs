@@ -513,7 +513,7 @@ fn textures() {
 
 #[test]
 fn what_cannot_be_rendered_yet_is_left_out_on_request() {
-    let content = r#"<shape type="serialized"/><emitter type="timed_sunsky"/><medium type="heterogeneous" id="fog">
+    let content = r#"<shape type="hair"/><emitter type="timed_sunsky"/><medium type="heterogeneous" id="fog">
         <volume name="sigma_t" type="openvdb"/></medium>
         <shape type="sphere"><bsdf type="null"/><ref name="interior" id="fog"/></shape>"#;
     let file = read_with(content, &files(), &Options { defines: Vec::new(), lenient: true });
@@ -521,7 +521,7 @@ fn what_cannot_be_rendered_yet_is_left_out_on_request() {
     assert!(file.scene.media.list.is_empty() && file.scene.shapes[0].boundary == Boundary::default());
     assert_eq!(
         file.warnings[0].to_string(),
-        "s.xml:2:14: warning: shape \"serialized\" cannot be rendered yet and is left out"
+        "s.xml:2:14: warning: shape \"hair\" cannot be rendered yet and is left out"
     );
 }
 
@@ -616,4 +616,19 @@ fn the_sun_of_version_0_6_stands_over_y() {
         panic!("{:?}", file.scene.lights)
     };
     assert!((direction - Vec3::Y).length() < 1e-6);
+}
+
+#[test]
+fn lamps_of_ies_files() {
+    let ies = "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 100\n0 45 90\n0\n500 250 0\n";
+    let files = files().with("lamp.ies", ies);
+    let content = r#"<emitter type="ies"><string name="filename" value="lamp.ies"/><float name="intensity" value="0.5"/></emitter>"#;
+    let file = read_with(content, &files, &Options::default());
+    let LightKind::Goniometric { intensity, table, .. } = file.scene.lights[0].kind else {
+        panic!("{:?}", file.scene.lights)
+    };
+    assert_eq!(intensity, Rgb::splat(250.0));
+    let image = &file.scene.textures.images[table];
+    assert_eq!((image.brightest(), image.pixel(0, image.height - 1)), (1.0, Rgb::WHITE));
+    assert_eq!(image.pixel(0, 0), Rgb::BLACK);
 }

@@ -13,6 +13,7 @@ use super::properties::Plugin;
 use super::reader::Reader;
 use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
+use crate::ies::read_ies;
 
 /// Half of the angle of the spot that stands for a beam.
 const BEAM_DEG: f32 = 0.1;
@@ -35,6 +36,7 @@ impl<'t> Reader<'t> {
                 self.daylight(&plugin);
                 return;
             }
+            "ies" => self.ies(&plugin),
             "collimated" => Some(self.collimated(&plugin)),
             "area" => {
                 let message =
@@ -151,6 +153,30 @@ impl<'t> Reader<'t> {
             fov_deg,
             fov_axis,
         })
+    }
+
+    /// A luminaire that was measured. It hangs along local −y, and `intensity` multiplies the candelas of its file.
+    fn ies(&mut self, plugin: &Plugin<'t>) -> Option<LightKind> {
+        let to_world = plugin.transform("to_world");
+        let intensity = self.color_property(plugin, "intensity", 1.0, Role::Emission);
+        let Some((name, at)) = plugin.text("filename") else {
+            self.log.error(plugin.location(), "emitter \"ies\" lacks a filename");
+            return None;
+        };
+        let (path, bytes) = self.read_file(name, at)?;
+        match read_ies(&String::from_utf8_lossy(&bytes)) {
+            Ok(profile) => {
+                self.origins.images.push(at.clone());
+                let table = self.textures.images.push(profile.table.into());
+                let intensity = intensity * profile.peak_candela;
+                let mapping = EnvironmentMapping::Equirectangular;
+                Some(LightKind::Goniometric { to_world, intensity, table, mapping })
+            }
+            Err(error) => {
+                self.log.error(at, format!("{}: {error}", path.display()));
+                None
+            }
+        }
     }
 
     /// A beam without width, as a narrow spot of the same power.

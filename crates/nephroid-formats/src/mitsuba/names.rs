@@ -27,9 +27,9 @@ pub(super) const PROPERTY_NAMES: &[&str] = &[
     "alpha_sample", "alpha_u", "alpha_v", "ambient", "anisotropic", "aovs", "aperture_radius",
     "azimuthal_roughness", "banner", "base_color", "beam_width", "bitmap", "block_size", "bsdf",
     "bsdf_samples", "cache", "center", "centers", "channel", "clearcoat", "clearcoat_gloss",
-    "clearcoat_sampling_rate", "color", "color0", "color1", "compensate", "complex_sun", "component_format",
-    "crop_height", "crop_offset_x", "crop_offset_y", "crop_width", "cutoff_angle", "data", "day", "delta",
-    "diff_trans", "diffuse_reflectance", "diffuse_reflectance_sampling_rate",
+    "clearcoat_sampling_rate", "collapse", "color", "color0", "color1", "compensate", "complex_sun",
+    "component_format", "crop_height", "crop_offset_x", "crop_offset_y", "crop_width", "cutoff_angle",
+    "data", "day", "delta", "diff_trans", "diffuse_reflectance", "diffuse_reflectance_sampling_rate",
     "diffuse_transmittance_sampling_rate", "direction", "distribution", "emission", "emitter",
     "emitter_samples", "end_day", "end_month", "end_year", "eta", "eumelanin", "exponent", "ext_eta",
     "ext_ior", "extent", "exterior", "face_normals", "far_clip", "file_format", "filename", "filter_type",
@@ -38,24 +38,25 @@ pub(super) const PROPERTY_NAMES: &[&str] = &[
     "has_spectral_extinction", "height", "hide_emitters", "high_quality_edges", "hour", "int_ior",
     "intensity", "interior", "irradiance", "jitter", "k", "latitude", "left_handed", "line_width", "lobes",
     "longitude", "longitudinal_roughness", "main_specular_sampling_rate", "majorant_factor",
-    "majorant_grid", "majorant_resolution_factor", "material", "max_anisotropy", "max_depth", "max_value",
-    "medium", "metallic", "method", "minute", "mis_compensation", "month", "near_clip", "nested_bsdf",
-    "nonlinear", "normalmap", "normals", "opacity", "origin", "p0", "p1", "pheomelanin", "pixel_format",
-    "polarizing", "position", "power", "principal_point_offset_x", "principal_point_offset_y", "priority",
-    "project_seed", "quaternions", "radiance", "radius", "raw", "reflectance", "resolution", "roughness",
-    "rr_depth", "sample_border", "sample_count", "sample_emitters", "sample_visible", "samples_per_pass",
-    "samples_per_pixel", "sampling_weight", "scale", "scale_factor", "scale_tilt", "scales", "second",
-    "seed", "shading_samples", "shape_index", "sheen", "sheen_tint", "shutter_close", "shutter_open",
-    "sigma_a", "sigma_s", "sigma_t", "silhouette_sampling_weight", "size", "sky_scale", "spec_tint",
-    "spec_trans", "specular", "specular_reflectance", "specular_reflectance_sampling_rate",
-    "specular_sampling_weight", "specular_transmittance", "specular_transmittance_sampling_rate", "sppc",
-    "sppi", "sppp", "srf", "srgb_primitives", "start_day", "start_month", "start_year", "stddev",
-    "step_size", "strength", "stretch", "sun_aperture", "sun_direction", "sun_radius_scale", "sun_scale", "target",
-    "temperature", "texture", "theta", "thickness", "timeout", "timezone", "to_uv", "to_world",
-    "transmittance", "turbidity", "unbounded", "uoffset", "uscale", "use_grid_bbox",
-    "use_shadowing_function", "use_spectral_mis", "value", "values", "variant", "voffset", "volume",
-    "vscale", "wavelength", "wavelength_max", "wavelength_min", "wavelengths", "weight", "weights", "width",
-    "window_end_time", "window_start_time", "wrap_mode", "wrap_mode_u", "wrap_mode_v", "year",
+    "majorant_grid", "majorant_resolution_factor", "material", "max_anisotropy", "max_depth",
+    "max_smooth_angle", "max_value", "medium", "metallic", "method", "minute", "mis_compensation", "month",
+    "near_clip", "nested_bsdf", "nonlinear", "normalmap", "normals", "opacity", "origin", "p0", "p1",
+    "pheomelanin", "pixel_format", "polarizing", "position", "power", "principal_point_offset_x",
+    "principal_point_offset_y", "priority", "project_seed", "quaternions", "radiance", "radius", "raw",
+    "reflectance", "resolution", "roughness", "rr_depth", "sample_border", "sample_count",
+    "sample_emitters", "sample_visible", "samples_per_pass", "samples_per_pixel", "sampling_weight",
+    "scale", "scale_factor", "scale_tilt", "scales", "second", "seed", "shading_samples", "shape_index",
+    "sheen", "sheen_tint", "shutter_close", "shutter_open", "sigma_a", "sigma_s", "sigma_t",
+    "silhouette_sampling_weight", "size", "sky_scale", "spec_tint", "spec_trans", "specular",
+    "specular_reflectance", "specular_reflectance_sampling_rate", "specular_sampling_weight",
+    "specular_transmittance", "specular_transmittance_sampling_rate", "sppc", "sppi", "sppp", "srf",
+    "srgb_primitives", "start_day", "start_month", "start_year", "stddev", "step_size", "strength",
+    "stretch", "sun_aperture", "sun_direction", "sun_radius_scale", "sun_scale", "target", "temperature",
+    "texture", "theta", "thickness", "timeout", "timezone", "to_uv", "to_world", "transmittance",
+    "turbidity", "unbounded", "uoffset", "uscale", "use_grid_bbox", "use_shadowing_function",
+    "use_spectral_mis", "value", "values", "variant", "voffset", "volume", "vscale", "wavelength",
+    "wavelength_max", "wavelength_min", "wavelengths", "weight", "weights", "width", "window_end_time",
+    "window_start_time", "wrap_mode", "wrap_mode_u", "wrap_mode_v", "year",
 ];
 
 /// Whether some plugin has a property of this name.
@@ -73,11 +74,21 @@ pub(super) const SAMPLERS: &[&str] =
 
 pub(super) const FILTERS_LATER: &[&str] = &["catmullrom", "lanczos"];
 
-pub(super) const SHAPES: &[&str] =
-    &["sphere", "rectangle", "disk", "cylinder", "cube", "obj", "ply", "plane", "shapegroup", "instance"];
+pub(super) const SHAPES: &[&str] = &[
+    "sphere",
+    "rectangle",
+    "disk",
+    "cylinder",
+    "cube",
+    "obj",
+    "ply",
+    "plane",
+    "serialized",
+    "shapegroup",
+    "instance",
+];
 
 pub(super) const SHAPES_LATER: &[&str] = &[
-    "serialized",
     "sdfgrid",
     "bsplinecurve",
     "linearcurve",
@@ -133,10 +144,11 @@ pub(super) const EMITTERS: &[&str] = &[
     "sky",
     "sun",
     "sunsky",
+    "ies",
     "collimated",
 ];
 
-pub(super) const EMITTERS_LATER: &[&str] = &["timed_sunsky", "ies"];
+pub(super) const EMITTERS_LATER: &[&str] = &["timed_sunsky"];
 
 pub(super) const TEXTURES: &[&str] = &[
     "bitmap",

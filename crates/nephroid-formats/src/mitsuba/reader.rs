@@ -35,8 +35,8 @@ pub(super) enum Outcome<T> {
     Failed,
 }
 
-/// How a mesh file was read: its path, `face_normals`, `flip_tex_coords`.
-pub(super) type MeshKey = (PathBuf, bool, bool);
+/// How a mesh file was read: its path, `face_normals`, `flip_tex_coords` and which of its meshes.
+pub(super) type MeshKey = (PathBuf, bool, bool, u32);
 
 /// A scene in the making.
 pub(super) struct Reader<'t> {

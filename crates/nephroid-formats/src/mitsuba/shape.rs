@@ -16,7 +16,7 @@ use super::reader::Reader;
 use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
-use crate::mesh::{MeshOptions, read_obj, read_ply};
+use crate::mesh::{MeshOptions, read_obj, read_ply, read_serialized};
 
 impl<'t> Reader<'t> {
     /// Reads a `<shape>` into the scene; what is wrong goes to the log.
@@ -48,7 +48,7 @@ impl<'t> Reader<'t> {
                 plugin.ignore(&["face_normals"]);
                 Some(Geometry::Cube)
             }
-            "obj" | "ply" => self.mesh(plugin).map(Geometry::Mesh),
+            "obj" | "ply" | "serialized" => self.mesh(plugin).map(Geometry::Mesh),
             kind if SHAPES_LATER.contains(&kind) => {
                 self.left_out(plugin.location(), &format!("shape \"{kind}\""));
                 return None;
@@ -134,6 +134,12 @@ impl<'t> Reader<'t> {
             face_normals: plugin.boolean("face_normals", false),
             flip_tex_coords: plugin.boolean("flip_tex_coords", is_obj),
         };
+        let number = match plugin.kind {
+            "serialized" => plugin.integer_within("shape_index", 0, 0..=u32::MAX),
+            _ => 0,
+        };
+        // Angles at which older versions made edges sharp, and shapes of a file that they took for one.
+        plugin.ignore(&["max_smooth_angle", "collapse"]);
         let Some((name, at)) = plugin.text("filename") else {
             if !plugin.has("filename") {
                 self.log.error(plugin.location(), format!("shape \"{}\" lacks a filename", plugin.kind));
@@ -141,11 +147,15 @@ impl<'t> Reader<'t> {
             return None;
         };
         let (path, bytes) = self.read_file(name, at)?;
-        let key = (path.clone(), options.face_normals, options.flip_tex_coords);
+        let key = (path.clone(), options.face_normals, options.flip_tex_coords, number);
         if let Some(handle) = self.mesh_of.get(&key) {
             return Some(*handle);
         }
-        let read = if is_obj { read_obj(&bytes, options) } else { read_ply(&bytes, options) };
+        let read = match plugin.kind {
+            "obj" => read_obj(&bytes, options),
+            "ply" => read_ply(&bytes, options),
+            _ => read_serialized(&bytes, number, options),
+        };
         match read {
             Ok(file) => {
                 if file.degenerate > 0 {

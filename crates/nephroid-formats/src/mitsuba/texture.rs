@@ -259,7 +259,7 @@ impl<'t> Reader<'t> {
         let name = plugin.text("name");
         let scale = plugin.float("scale", 1.0);
         let color = match name {
-            Some((name, _)) if name == "vertex_color" => Texture::VertexColor,
+            Some(("vertex_color", _)) => Texture::VertexColor,
             Some((name, at)) => {
                 let message = format!(
                     "only \"vertex_color\" is read of meshes; \"{}\" is plain grey (0.5)",

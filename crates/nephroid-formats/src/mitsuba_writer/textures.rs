@@ -48,7 +48,7 @@ impl Writer<'_, '_> {
                     self.xml.plugin("texture", "checkerboard", &id);
                     self.paint("color0", board.color0, Range::Unit);
                     self.paint("color1", board.color1, Range::Unit);
-                    self.to_uv(&board.to_uv);
+                    self.uv_map(&board.to_uv);
                     self.xml.close();
                 }
                 Texture::VertexColor => {
@@ -89,7 +89,7 @@ impl Writer<'_, '_> {
                 self.xml.string("wrap_mode", "clamp");
             }
         }
-        self.to_uv(&bitmap.to_uv);
+        self.uv_map(&bitmap.to_uv);
         self.xml.close();
     }
 
@@ -175,7 +175,7 @@ impl Writer<'_, '_> {
         unit(self.scene.textures.mean(texture)).mean()
     }
 
-    fn to_uv(&mut self, map: &Affine2) {
+    fn uv_map(&mut self, map: &Affine2) {
         if *map == Affine2::IDENTITY {
             return;
         }
