@@ -7,8 +7,12 @@ mod integrator_request;
 mod log;
 pub mod mesh;
 pub mod mitsuba;
+mod number;
+mod open;
+pub mod pbrt;
 pub mod photons;
 mod scene_file;
+mod spectra;
 pub mod vfs;
 pub mod volume;
 

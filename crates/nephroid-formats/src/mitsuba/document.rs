@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::legacy::upgrade;
-use super::open::{MAX_BYTES, decode, find};
+use crate::open::{MAX_BYTES, decode, find};
 use super::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, Location, Source};
 use crate::log::{Log, shortened};

@@ -7,7 +7,7 @@ use super::document::Element;
 use super::names::{EMITTERS, EMITTERS_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
+use crate::spectra::Role;
 use crate::diagnostic::Diagnostic;
 
 impl<'t> Reader<'t> {

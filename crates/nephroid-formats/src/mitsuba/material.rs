@@ -6,11 +6,11 @@ use nephroid::material::{Material, Metal};
 use nephroid::texture::Texture;
 
 use super::document::Element;
-use super::metals::{Known, metal, names};
+use crate::spectra::{Known, metal, names};
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::spectrum::Role;
+use crate::spectra::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;

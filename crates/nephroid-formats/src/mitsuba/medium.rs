@@ -8,7 +8,7 @@ use super::document::Element;
 use super::names::{MEDIA, PHASES, PHASES_LATER};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::spectrum::Role;
+use crate::spectra::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;

@@ -6,7 +6,6 @@
 //! by its nearest kin with a warning, or refused where nothing is near (see [`Options::lenient`]).
 
 mod boundary;
-mod cie1931;
 mod document;
 mod emitter;
 mod group;
@@ -14,16 +13,12 @@ mod integrator;
 mod legacy;
 mod material;
 mod medium;
-mod metals;
 mod names;
-mod number;
-mod open;
 mod parameters;
 mod properties;
 mod reader;
 mod sensor;
 mod shape;
-mod spectrum;
 mod texture;
 mod transform;
 mod value;

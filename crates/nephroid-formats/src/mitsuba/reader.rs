@@ -12,7 +12,7 @@ use nephroid::texture::{Image, Texture, Textures};
 
 use super::document::Element;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
-use super::open::find;
+use crate::open::find;
 use super::properties::Plugin;
 use super::value::Ids;
 use super::volume::StoredGrid;

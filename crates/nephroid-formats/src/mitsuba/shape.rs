@@ -10,7 +10,7 @@ use super::document::Element;
 use super::names::{SHAPES, SHAPES_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
+use crate::spectra::Role;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
 use crate::mesh::{MeshOptions, read_obj, read_ply};

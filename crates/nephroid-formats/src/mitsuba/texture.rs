@@ -9,7 +9,7 @@ use super::document::Element;
 use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::spectrum::{Role, Spectrum};
+use crate::spectra::{Role, Spectrum};
 use super::value::{Property, Value};
 use crate::diagnostic::Location;
 use crate::image::read_texture;

@@ -3,7 +3,7 @@
 use nephroid::math::{DAffine3, DMat3, DVec3, Transform};
 
 use super::document::{Attribute, Element};
-use super::number::{float, floats};
+use crate::number::{float, floats};
 use crate::diagnostic::Diagnostic;
 use crate::log::{Log, shortened};
 

@@ -7,11 +7,11 @@ use crate::diagnostic::{Location, Source};
 use crate::log::Log;
 use crate::vfs::Files;
 
-/// Bytes of XML in one scene.
-pub(super) const MAX_BYTES: usize = 256 << 20;
+/// Bytes of text in one scene.
+pub(crate) const MAX_BYTES: usize = 256 << 20;
 
 /// The path and bytes of a file named in a scene: an absolute one, or the first in the folders.
-pub(super) fn find(
+pub(crate) fn find(
     files: &dyn Files,
     folders: &[PathBuf],
     name: &str,
@@ -44,7 +44,7 @@ pub(super) fn find(
 }
 
 /// The text of a file, without a byte order mark.
-pub(super) fn decode(
+pub(crate) fn decode(
     name: &str,
     bytes: Vec<u8>,
     included_at: Option<&Location>,
