@@ -5,7 +5,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::integrator::{Method, PathConfig, PhotonMapperConfig};
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::observer::Silent;
@@ -108,7 +108,12 @@ const KINDS: [Kind; 14] = [
         }
         let image = b.scene.textures.images.push(image);
         let to_world = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 70.0);
-        b.light(LightKind::Environment { image, scale: 0.3, to_world });
+        b.light(LightKind::Environment {
+            mapping: EnvironmentMapping::Equirectangular,
+            image,
+            scale: 0.3,
+            to_world,
+        });
     }),
     ("rectangle", |b| glow(b, Geometry::Rectangle, place(0.5, 160.0, [0.5, -1.5, 6.0]))),
     ("disk", |b| glow(b, Geometry::Disk, place(0.7, 200.0, [-1.5, -0.5, 5.0]))),

@@ -12,7 +12,7 @@ use nephroid::integrator::{
     AutoConfig, DirectSource, FinalGather, Method, PathConfig, PhotonMapperConfig, PpmConfig, VcmConfig,
     VolumeEstimate,
 };
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Media;
@@ -74,7 +74,12 @@ fn room(scale: f64, place: Transform) -> World {
     let mut image = Image::filled(4, 2, Rgb::splat(0.2));
     image.pixels[5] = Rgb::new(1.0, 0.7, 0.4);
     let image = b.scene.textures.images.push(image);
-    b.light(LightKind::Environment { image, scale: 0.5, to_world: place });
+    b.light(LightKind::Environment {
+        mapping: EnvironmentMapping::Equirectangular,
+        image,
+        scale: 0.5,
+        to_world: place,
+    });
     b.build()
 }
 

@@ -8,7 +8,7 @@
 use nephroid::camera::Projection;
 use nephroid::color::Rgb;
 use nephroid::integrator::{DirectSource, Method, PathConfig, PhotonMapperConfig};
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec3};
 use nephroid::shape::{Geometry, Mesh};
@@ -67,6 +67,7 @@ fn sky_image(b: &mut Builder) -> LightKind {
         *pixel = Rgb::new(0.2, 0.3, 0.5) * (i * 7 % 11) as f32;
     }
     LightKind::Environment {
+        mapping: EnvironmentMapping::Equirectangular,
         image: b.scene.textures.images.push(image),
         scale: 0.3,
         to_world: Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 70.0),

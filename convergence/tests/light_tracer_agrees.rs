@@ -9,7 +9,7 @@ use nephroid::color::Rgb;
 use nephroid::film::{Crop, Filter};
 use nephroid::handle::Handle;
 use nephroid::integrator::{Method, PhotonMapperConfig};
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::{Coefficient, Phase};
@@ -179,7 +179,12 @@ fn under_spots_suns_and_skies() {
     b.light(LightKind::Directional { direction, irradiance: Rgb::new(0.2, 1.0, 0.2) });
     let pixels = (0..32).map(|i| Rgb::new(0.1, 0.1 * (i % 8) as f32, 0.5 + (i / 8) as f32 * 0.2)).collect();
     let image = b.scene.textures.images.push(Image { width: 8, height: 4, pixels });
-    b.light(LightKind::Environment { image, scale: 0.8, to_world: Transform::rotate(DVec3::X, 20.0) });
+    b.light(LightKind::Environment {
+        mapping: EnvironmentMapping::Equirectangular,
+        image,
+        scale: 0.8,
+        to_world: Transform::rotate(DVec3::X, 20.0),
+    });
     agree("lights", b, None);
 }
 

@@ -11,7 +11,7 @@
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::integrator::{FinalGather, Method, PhotonMapperConfig, PpmConfig, VcmConfig};
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{Affine2, DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::{Coefficient, GridValues, Medium, Phase};
@@ -175,7 +175,12 @@ fn under_a_spot_and_a_sky() {
     let mut image = Image::filled(4, 2, Rgb::splat(0.2));
     image.pixels[1] = Rgb::new(1.0, 0.7, 0.4);
     let image = b.scene.textures.images.push(image);
-    b.light(LightKind::Environment { image, scale: 1.0, to_world: Transform::IDENTITY });
+    b.light(LightKind::Environment {
+        mapping: EnvironmentMapping::Equirectangular,
+        image,
+        scale: 1.0,
+        to_world: Transform::IDENTITY,
+    });
     all_agree(b, false, 0.02);
 }
 

@@ -9,7 +9,7 @@ use nephroid::camera::{FovAxis, Projection};
 use nephroid::color::Rgb;
 use nephroid::film::Crop;
 use nephroid::integrator::{Method, PhotonMapperConfig, VcmConfig};
-use nephroid::light::LightKind;
+use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
 use nephroid::math::{Affine2, DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Phase;
@@ -178,7 +178,12 @@ fn under_an_environment_map() {
     image.pixels[11] = Rgb::new(6.0, 5.0, 4.0);
     image.pixels[12] = Rgb::new(8.0, 5.0, 3.0);
     let image = b.scene.textures.images.push(image);
-    b.light(LightKind::Environment { image, scale: 1.0, to_world: Transform::IDENTITY });
+    b.light(LightKind::Environment {
+        mapping: EnvironmentMapping::Equirectangular,
+        image,
+        scale: 1.0,
+        to_world: Transform::IDENTITY,
+    });
     all_agree(b);
 }
 

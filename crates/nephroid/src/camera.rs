@@ -68,6 +68,22 @@ pub enum FovAxis {
     Larger,
 }
 
+impl FovAxis {
+    /// Half the width and height of a picture of this shape at distance 1, where the angle spans this of it.
+    pub(crate) fn half_size(self, fov_deg: f32, width: f32, height: f32) -> Vec2 {
+        let (w, h) = (width, height);
+        let tan = tan((0.5 * fov_deg).to_radians());
+        let half_width = match self {
+            Self::X => tan,
+            Self::Y => tan * w / h,
+            Self::Diagonal => tan * w / (w * w + h * h).sqrt(),
+            Self::Smaller => tan * if w <= h { 1.0 } else { w / h },
+            Self::Larger => tan * if w >= h { 1.0 } else { w / h },
+        };
+        Vec2::new(half_width, half_width * h / w)
+    }
+}
+
 /// A camera made ready for a film: maps positions on the film to rays.
 #[derive(Clone, Debug)]
 pub(crate) struct CameraRays {
@@ -91,15 +107,7 @@ impl CameraRays {
             Projection::Orthographic => (Vec2::new(1.0, h / w), Vec2::ZERO),
             Projection::Perspective { fov_deg, fov_axis, principal_point_offset }
             | Projection::ThinLens { fov_deg, fov_axis, principal_point_offset, .. } => {
-                let tan = tan((0.5 * fov_deg).to_radians());
-                let half_width = match fov_axis {
-                    FovAxis::X => tan,
-                    FovAxis::Y => tan * w / h,
-                    FovAxis::Diagonal => tan * w / (w * w + h * h).sqrt(),
-                    FovAxis::Smaller => tan * if w <= h { 1.0 } else { w / h },
-                    FovAxis::Larger => tan * if w >= h { 1.0 } else { w / h },
-                };
-                (Vec2::new(half_width, half_width * h / w), principal_point_offset)
+                (fov_axis.half_size(fov_deg, w, h), principal_point_offset)
             }
         };
         let Camera { to_world, projection, .. } = *camera;

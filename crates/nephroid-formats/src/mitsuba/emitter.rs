@@ -1,6 +1,6 @@
 //! `<emitter>` elements outside shapes.
 
-use nephroid::light::{Light, LightKind};
+use nephroid::light::{EnvironmentMapping, Light, LightKind};
 use nephroid::math::Vec3;
 
 use super::document::Element;
@@ -99,7 +99,7 @@ impl<'t> Reader<'t> {
         let scale = plugin.float("scale", 1.0);
         plugin.ignore(&["mis_compensation"]);
         let image = self.image_property(plugin, false)?;
-        Some(LightKind::Environment { image, scale, to_world })
+        Some(LightKind::Environment { image, mapping: EnvironmentMapping::Equirectangular, scale, to_world })
     }
 
     fn not_both(&self, plugin: &Plugin, one: &'static str, other: &'static str) {

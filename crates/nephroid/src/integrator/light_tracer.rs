@@ -7,7 +7,6 @@
 use super::{Components, Estimator, LightPart, Met, PictureSums, Probe};
 use crate::color::Rgb;
 use crate::film::PixelSum;
-use crate::light::{Emitter, EmitterKind};
 use crate::material::{Transport, segments_by};
 use crate::observer::Observer;
 use crate::photon_map::NearestList;
@@ -43,14 +42,7 @@ pub(crate) struct LightTracer<'a> {
 
 impl<'a> LightTracer<'a> {
     pub fn new(world: &'a World, config: &'a LightTracerConfig) -> Self {
-        let is_seen = |emitter: &Emitter| match emitter.kind {
-            EmitterKind::Point { .. } | EmitterKind::Spot(_) | EmitterKind::Directional { .. } => false,
-            EmitterKind::Area(_)
-            | EmitterKind::Constant(_)
-            | EmitterKind::Environment(_)
-            | EmitterKind::Medium(_) => true,
-        };
-        let shines = world.has_media() || world.emitters().iter().any(is_seen);
+        let shines = world.has_media() || world.emitters().iter().any(|e| !e.is_dirac());
         Self { world, config, shines }
     }
 

@@ -7,6 +7,8 @@
 
 use std::f32::consts::PI;
 
+use super::emitter::{Emission, EmissionNumbers};
+use crate::color::Rgb;
 use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, warp};
 
 /// Most balls that are aimed at together.
@@ -69,14 +71,24 @@ impl Targets {
 
 /// A cone of directions.
 #[derive(Clone, Copy, Debug, Default)]
-struct Cone {
-    axis: Vec3,
-    one_minus_cos: f32,
+pub(super) struct Cone {
+    pub axis: Vec3,
+    pub one_minus_cos: f32,
 }
 
 impl Cone {
+    pub fn solid_angle(&self) -> f32 {
+        2.0 * PI * self.one_minus_cos
+    }
+
+    /// A direction uniform over the cone.
+    pub fn sample(&self, u: Vec2) -> Vec3 {
+        let local = warp::square_to_cone(u, self.one_minus_cos);
+        Frame::from_normal(self.axis).to_world(local).normalize()
+    }
+
     /// By the distance from the axis, which is exact for narrow cones, too.
-    fn contains(&self, direction: Vec3) -> bool {
+    pub fn contains(&self, direction: Vec3) -> bool {
         (direction - self.axis).length_squared() <= 2.0 * self.one_minus_cos
     }
 }
@@ -129,6 +141,25 @@ impl Cones {
         (cones.solid_angle() <= limit).then_some(cones)
     }
 
+    /// Starts light of a point without extent at the targets; `whole` is the power of all of it.
+    pub fn emit(
+        &self,
+        position: Vec3,
+        u: EmissionNumbers,
+        whole: Rgb,
+        intensity: impl FnOnce(Vec3) -> Rgb,
+    ) -> Emission {
+        match self.sample(u.target, u.direction) {
+            Some(direction) => Emission {
+                ray: Ray::new(position, direction),
+                surface: None,
+                power: intensity(direction) * self.solid_angle(),
+                emitted: whole,
+            },
+            None => Emission::elsewhere(position, whole),
+        }
+    }
+
     /// A direction uniform over the union, with density 1/[`solid_angle`](Self::solid_angle); none if
     /// it falls to another cone.
     pub fn sample(&self, u_cone: f32, u: Vec2) -> Option<Vec3> {
@@ -141,9 +172,24 @@ impl Cones {
         // Where rounding leaves something over, the last has it.
         let chosen = chosen.or(self.len.checked_sub(1))?;
         let cone = cones[chosen];
-        let local = warp::square_to_cone(u, cone.one_minus_cos);
-        let direction = Frame::from_normal(cone.axis).to_world(local).normalize();
+        let direction = cone.sample(u);
         (!cones[..chosen].iter().any(|before| before.contains(direction))).then_some(direction)
+    }
+}
+
+/// Whether cones, told by axis and sine of the half-angle, overlap that about +z of a frame with the sine and cosine of its
+/// half-angle, which is below 90°.
+pub(super) fn overlaps(frame: &Frame, sin_cutoff: f32, cos_cutoff: f32) -> impl Fn(Vec3, f32) -> bool {
+    let frame = *frame;
+    move |axis: Vec3, sin_half: f32| {
+        // Their axes are closer than the sum of the two angles; the margin is for rounding.
+        let cos_half = (1.0 - sin_half * sin_half).sqrt();
+        let (cos_sum, sin_sum) =
+            (cos_cutoff * cos_half - sin_cutoff * sin_half, sin_cutoff * cos_half + cos_cutoff * sin_half);
+        let local = frame.to_local(axis);
+        let across = Vec2::new(local.x, local.y).length();
+        // The sine of the sum less the angle between the axes; all are below 180°.
+        sin_sum * local.z - cos_sum * across >= -1e-4
     }
 }
 

@@ -2,8 +2,10 @@ use std::f32::consts::PI;
 
 use super::aim::{Cones, Disks, Targets};
 use super::area::AreaEmitter;
-use super::environment::{ConstantSky, EnvironmentMap};
+use super::environment::{ConstantSky, EnvironmentMap, Sun};
 use super::glow::Glow;
+use super::goniometric::Goniometric;
+use super::projector::Projector;
 use super::spot::Spot;
 use crate::color::Rgb;
 use crate::handle::Handle;
@@ -109,6 +111,8 @@ pub(crate) enum EmitterKind {
         intensity: Rgb,
     },
     Spot(Spot),
+    Goniometric(Box<Goniometric>),
+    Projector(Box<Projector>),
     Directional {
         direction: Vec3,
         irradiance: Rgb,
@@ -116,6 +120,7 @@ pub(crate) enum EmitterKind {
     },
     Constant(ConstantSky),
     Environment(EnvironmentMap),
+    Sun(Sun),
     /// A medium that gives off light: paths and camera rays find it on their way, photons start in it.
     Medium(Box<Glow>),
 }
@@ -181,22 +186,22 @@ impl Emitter {
     pub fn sample_incident(&self, lookup: Lookup<'_>, p: Vec3, u: Vec2) -> Option<Incident> {
         match &self.kind {
             EmitterKind::Area(area) => area.sample_incident(lookup, p, u),
-            EmitterKind::Point { position, intensity } => {
-                let to_light = *position - p;
-                let distance_sq = to_light.length_squared();
-                dirac(to_light.try_normalize()?, *intensity / distance_sq, Source::Point(*position))
-            }
+            EmitterKind::Point { position, intensity } => from_point(*position, p, |_| *intensity),
             EmitterKind::Spot(spot) => {
-                let to_light = spot.position - p;
-                let wi = to_light.try_normalize()?;
-                let intensity = spot.intensity(lookup.textures, -wi);
-                dirac(wi, intensity / to_light.length_squared(), Source::Point(spot.position))
+                from_point(spot.position, p, |direction| spot.intensity(lookup.textures, direction))
+            }
+            EmitterKind::Goniometric(lamp) => {
+                from_point(lamp.position, p, |direction| lamp.intensity(lookup.textures, direction))
+            }
+            EmitterKind::Projector(lamp) => {
+                from_point(lamp.position, p, |direction| lamp.intensity(lookup.textures, direction))
             }
             EmitterKind::Directional { direction, irradiance, .. } => {
                 dirac(-*direction, *irradiance, Source::Infinity)
             }
             EmitterKind::Constant(sky) => Some(sky.sample_incident(u)),
             EmitterKind::Environment(map) => map.sample_incident(lookup.textures, u),
+            EmitterKind::Sun(sun) => Some(sun.sample_incident(u)),
             EmitterKind::Medium(_) => None,
         }
     }
@@ -215,6 +220,7 @@ impl Emitter {
         match &self.kind {
             EmitterKind::Constant(_) => warp::SPHERE_PDF,
             EmitterKind::Environment(map) => map.pdf(direction),
+            EmitterKind::Sun(sun) => sun.pdf(direction),
             _ => 0.0,
         }
     }
@@ -224,6 +230,7 @@ impl Emitter {
         match &self.kind {
             EmitterKind::Constant(sky) => sky.radiance,
             EmitterKind::Environment(map) => map.radiance(textures, direction),
+            EmitterKind::Sun(sun) => sun.radiance(direction),
             _ => Rgb::BLACK,
         }
     }
@@ -239,8 +246,11 @@ impl Emitter {
             EmitterKind::Area(area) => area.brightest(textures),
             EmitterKind::Constant(sky) => sky.radiance.max_channel(),
             EmitterKind::Environment(map) => map.brightest(textures),
+            EmitterKind::Sun(sun) => sun.brightest(),
             EmitterKind::Point { .. }
             | EmitterKind::Spot(_)
+            | EmitterKind::Goniometric(_)
+            | EmitterKind::Projector(_)
             | EmitterKind::Directional { .. }
             | EmitterKind::Medium(_) => 0.0,
         }
@@ -252,8 +262,13 @@ impl Emitter {
             EmitterKind::Area(area) => Some(area.middle()),
             EmitterKind::Point { position, .. } => Some(*position),
             EmitterKind::Spot(spot) => Some(spot.position),
+            EmitterKind::Goniometric(lamp) => Some(lamp.position),
+            EmitterKind::Projector(lamp) => Some(lamp.position),
             EmitterKind::Medium(glow) => Some(glow.middle()),
-            EmitterKind::Directional { .. } | EmitterKind::Constant(_) | EmitterKind::Environment(_) => None,
+            EmitterKind::Directional { .. }
+            | EmitterKind::Constant(_)
+            | EmitterKind::Environment(_)
+            | EmitterKind::Sun(_) => None,
         }
     }
 
@@ -274,13 +289,23 @@ impl Emitter {
     pub fn is_dirac(&self) -> bool {
         matches!(
             self.kind,
-            EmitterKind::Point { .. } | EmitterKind::Spot(_) | EmitterKind::Directional { .. }
+            EmitterKind::Point { .. }
+                | EmitterKind::Spot(_)
+                | EmitterKind::Goniometric(_)
+                | EmitterKind::Projector(_)
+                | EmitterKind::Directional { .. }
         )
     }
 
     /// Whether rays that meet nothing see it.
     pub fn is_sky(&self) -> bool {
-        matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_))
+        matches!(self.kind, EmitterKind::Constant(_) | EmitterKind::Environment(_) | EmitterKind::Sun(_))
+    }
+
+    /// Whether it is a sky of which most directions bring some: where a sun alone shines, rays by chance find nothing that
+    /// asking for it does not.
+    pub fn is_wide_sky(&self) -> bool {
+        self.is_sky() && !matches!(self.kind, EmitterKind::Sun(_))
     }
 
     /// Whether its light comes from infinitely far away.
@@ -295,9 +320,12 @@ impl Emitter {
             EmitterKind::Directional { target, .. } => target.is_before(point, direction),
             EmitterKind::Constant(sky) => sky.target.is_before(point, direction),
             EmitterKind::Environment(map) => map.target.is_before(point, direction),
+            EmitterKind::Sun(sun) => sun.target.is_before(point, direction),
             EmitterKind::Area(_)
             | EmitterKind::Point { .. }
             | EmitterKind::Spot(_)
+            | EmitterKind::Goniometric(_)
+            | EmitterKind::Projector(_)
             | EmitterKind::Medium(_) => true,
         }
     }
@@ -319,25 +347,27 @@ impl Emitter {
                 let Some(cones) = cones else {
                     return Emission::whole(Ray::new(*position, sphere(u.direction)), None, self.power);
                 };
-                match cones.sample(u.target, u.direction) {
-                    Some(direction) => Emission {
-                        ray: Ray::new(*position, direction),
-                        surface: None,
-                        power: *intensity * cones.solid_angle(),
-                        emitted: self.power,
-                    },
-                    None => Emission::elsewhere(*position, self.power),
-                }
+                cones.emit(*position, u, self.power, |_| *intensity)
             }
             EmitterKind::Spot(spot) => spot.emit(lookup.textures, u, targets, self.power),
+            EmitterKind::Goniometric(lamp) => lamp.emit(lookup.textures, u, targets, self.power),
+            EmitterKind::Projector(lamp) => lamp.emit(lookup.textures, u, targets, self.power),
             EmitterKind::Directional { direction, irradiance, target } => {
                 target.emit(*direction, *irradiance, u, targets)
             }
             EmitterKind::Constant(sky) => sky.emit(u, targets, sphere(u.direction)),
             EmitterKind::Environment(map) => map.emit(lookup.textures, u, targets),
+            EmitterKind::Sun(sun) => sun.emit(u, targets),
             EmitterKind::Medium(glow) => glow.emit(u, sphere),
         }
     }
+}
+
+/// Light at `p` of a point with an intensity in the direction in which it leaves.
+fn from_point(position: Vec3, p: Vec3, intensity: impl FnOnce(Vec3) -> Rgb) -> Option<Incident> {
+    let to_light = position - p;
+    let wi = to_light.try_normalize()?;
+    dirac(wi, intensity(-wi) / to_light.length_squared(), Source::Point(position))
 }
 
 fn dirac(wi: Vec3, irradiance: Rgb, source: Source) -> Option<Incident> {

@@ -6,6 +6,9 @@ mod area;
 mod emitter;
 mod environment;
 mod glow;
+mod goniometric;
+mod projector;
+mod sphere_image;
 mod spot;
 
 #[cfg(test)]
@@ -15,10 +18,13 @@ pub(crate) use aim::{Ball, MAX_BALLS, Targets};
 pub(crate) use area::AreaEmitter;
 pub use emitter::{Emission, Incident, Source, SphereSampling};
 pub(crate) use emitter::{EmissionNumbers, Emitter, EmitterKind, Lookup, Target};
-pub(crate) use environment::{ConstantSky, EnvironmentMap};
+pub(crate) use environment::{ConstantSky, EnvironmentMap, Sun};
 pub(crate) use glow::{Glow, Lattice};
+pub(crate) use goniometric::Goniometric;
+pub(crate) use projector::Projector;
 pub(crate) use spot::Spot;
 
+use crate::camera::FovAxis;
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Transform, Vec3};
@@ -71,13 +77,75 @@ pub enum LightKind {
         /// W/(m²·sr).
         radiance: Rgb,
     },
-    /// Radiance from an equirectangular image around the scene.
+    /// Radiance from an image around the scene.
     Environment {
-        /// W/(m²·sr) before scaling. The first row is the zenith, local +y.
+        /// W/(m²·sr) before scaling.
         image: Handle<Image>,
+        /// How directions lie in the image.
+        mapping: EnvironmentMapping,
         /// Multiplies the image.
         scale: f32,
         /// Turns it.
         to_world: Transform,
     },
+    /// A disc at infinity, evenly bright, such as the sun: seen by cameras and in mirrors.
+    Sun {
+        /// The direction *towards* its middle.
+        direction: Vec3,
+        /// W/m² on a surface facing its middle.
+        irradiance: Rgb,
+        /// Half of the angle that it is wide, below 90°; at 0 it is as `Directional`. The sun's is 0.2666°.
+        angular_radius_deg: f32,
+    },
+    /// A point whose intensity depends on the direction, by a table of all of them.
+    Goniometric {
+        /// Its place and how its table is turned.
+        to_world: Transform,
+        /// W/sr where the table is 1.
+        intensity: Rgb,
+        /// Multiplies the intensity in the direction, in local space, in which light leaves.
+        table: Handle<Image>,
+        /// How directions lie in the table.
+        mapping: EnvironmentMapping,
+    },
+    /// A pinhole that shows an image in a frustum about local +z, as a camera at its place would have seen it: the
+    /// first row is on top, towards local +y, and the first column towards local +x.
+    Projector {
+        /// Its place and direction.
+        to_world: Transform,
+        /// What is shown.
+        image: Handle<Image>,
+        /// Multiplies the image.
+        scale: Rgb,
+        /// What the image says.
+        unit: ProjectorUnit,
+        /// Opening angle along `fov_axis`.
+        fov_deg: f32,
+        /// What of the image the angle spans.
+        fov_axis: FovAxis,
+    },
+}
+
+/// How the directions of a sphere lie in a rectangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EnvironmentMapping {
+    /// By longitude and latitude. The first row is local +y; the first column begins at −z, and columns go by +x, +z and
+    /// −x. Rows lie from pole to pole, the first and the last on them, as Mitsuba's `envmap` has it.
+    #[default]
+    Equirectangular,
+    /// A square whose parts are as large as their solid angles (Clarberg 2008, *Fast Equal-Area Mapping of the
+    /// (Hemi)Sphere using SIMD*, doi 10.1080/2151237X.2008.10129263), in the layout of pbrt-v4: the middle is local +z,
+    /// all corners are −z, and the first row lies towards −y.
+    EqualArea,
+}
+
+/// What the image of a projector says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProjectorUnit {
+    /// W/sr, as pbrt's `projection` has it: a screen across the axis is darker towards its edges.
+    Intensity,
+    /// W/m² on the plane z = 1 of local space: a screen across the axis shows the image evenly. Mitsuba 3's `projector`
+    /// has this times π, so that a white screen there shows the image's values.
+    #[default]
+    Irradiance,
 }

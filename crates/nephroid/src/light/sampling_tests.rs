@@ -3,7 +3,7 @@
 
 use nephroid_testkit::{ALPHA, Outcome, Pcg32, SphereTest, sidak};
 
-use super::{Light, LightKind};
+use super::{EnvironmentMapping, Light, LightKind};
 use crate::camera::{Camera, FovAxis, Projection};
 use crate::color::Rgb;
 use crate::film::{FilmSettings, Filter};
@@ -144,7 +144,12 @@ fn skies_are_sampled_with_the_density_they_claim() {
     for (seed, turn) in
         [(21, Transform::rotate(DVec3::X, 90.0)), (22, Transform::rotate(DVec3::new(0.3, 1.0, -0.5), 100.0))]
     {
-        let kind = LightKind::Environment { image: handle, scale: 2.0, to_world: turn };
+        let kind = LightKind::Environment {
+            image: handle,
+            mapping: EnvironmentMapping::Equirectangular,
+            scale: 2.0,
+            to_world: turn,
+        };
         let world = sky(kind, std::slice::from_ref(&image));
         test("an environment", &world, seed, |wi| world.emitters()[0].pdf_of_sky(wi));
     }

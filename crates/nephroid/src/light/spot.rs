@@ -1,6 +1,6 @@
 use std::f32::consts::PI;
 
-use super::aim::{Cones, Targets};
+use super::aim::{Cones, Targets, overlaps};
 use super::emitter::{Emission, EmissionNumbers};
 use crate::color::Rgb;
 use crate::handle::Handle;
@@ -119,32 +119,12 @@ impl Spot {
             let power = self.intensity(textures, direction) / warp::square_to_cone_pdf(width);
             return Emission::whole(Ray::new(self.position, direction), None, power);
         };
-        match cones.sample(u.target, u.direction) {
-            Some(direction) => Emission {
-                ray: Ray::new(self.position, direction),
-                surface: None,
-                power: self.intensity(textures, direction) * cones.solid_angle(),
-                emitted: whole,
-            },
-            None => Emission::elsewhere(self.position, whole),
-        }
+        cones.emit(self.position, u, whole, |direction| self.intensity(textures, direction))
     }
 
     /// The targets that overlap the cone, unless they fill more than `limit`.
     fn cones(&self, targets: &Targets, limit: f32) -> Option<Cones> {
-        let (sin_cutoff, cos_cutoff) = (sin(self.cutoff), cos(self.cutoff));
-        let overlaps = |axis: Vec3, sin_half: f32| {
-            // Their axes are closer than the sum of the two angles; the margin is for rounding.
-            let cos_half = (1.0 - sin_half * sin_half).sqrt();
-            let (cos_sum, sin_sum) = (
-                cos_cutoff * cos_half - sin_cutoff * sin_half,
-                sin_cutoff * cos_half + cos_cutoff * sin_half,
-            );
-            let local = self.frame.to_local(axis);
-            let across = Vec2::new(local.x, local.y).length();
-            // The sine of the sum less the angle between the axes; all are below 180°.
-            sin_sum * local.z - cos_sum * across >= -1e-4
-        };
+        let overlaps = overlaps(&self.frame, sin(self.cutoff), cos(self.cutoff));
         Cones::seen_from(targets, (self.position, 0.0), None, limit, overlaps)
     }
 }

@@ -1,7 +1,7 @@
 //! Maps from the unit square to other domains, with their densities: `square_to_x`, `x_to_square`
 //! (the inverse) and `square_to_x_pdf` (with respect to area or solid angle of the target).
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
 
 use super::real::{atan2, cos, exp_m1, ln, pow, sin_cos, sin_cos_of_quarter};
 use super::{Vec2, Vec3};
@@ -65,6 +65,35 @@ pub const SPHERE_PDF: f32 = 0.25 / PI;
 pub fn sphere_to_square(w: Vec3) -> Vec2 {
     let phi = atan2(w.y, w.x) / (2.0 * PI);
     Vec2::new((1.0 - w.z) * 0.5, if phi < 0.0 { phi + 1.0 } else { phi })
+}
+
+/// Uniform on the unit sphere, and continuous across all but the edges of the square, which are folded: the middle is +z and
+/// all corners are −z, each quarter of the square is a quarter of the sphere, and the corner triangles of these lie behind
+/// (Clarberg 2008, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, doi 10.1080/2151237X.2008.10129263).
+#[inline]
+pub fn square_to_equal_area_sphere(u: Vec2) -> Vec3 {
+    let p = 2.0 * u - Vec2::ONE;
+    let a = p.abs();
+    // From the middle 0 to the diagonal 1, and on to the corner 0.
+    let ahead = 1.0 - (a.x + a.y);
+    let r = 1.0 - ahead.abs();
+    // The angle is within 45° of the diagonal.
+    let (sin, cos) = if r == 0.0 { (0.0, 1.0) } else { sin_cos_of_quarter((a.y - a.x) / r) };
+    let (sin, cos) = (FRAC_1_SQRT_2 * (cos + sin), FRAC_1_SQRT_2 * (cos - sin));
+    let rho = r * (2.0 - r * r).max(0.0).sqrt();
+    Vec3::new((rho * cos).copysign(p.x), (rho * sin).copysign(p.y), (1.0 - r * r).copysign(ahead))
+}
+
+/// Inverse of [`square_to_equal_area_sphere`].
+#[inline]
+pub fn equal_area_sphere_to_square(w: Vec3) -> Vec2 {
+    let a = w.abs();
+    // √(1 − |z|), which next to the poles only the others tell.
+    let r = ((a.x * a.x + a.y * a.y) / (1.0 + a.z)).sqrt();
+    let v = r * (atan2(a.y, a.x) / FRAC_PI_2);
+    let p = Vec2::new(r - v, v);
+    let p = if w.z < 0.0 { Vec2::new(1.0 - p.y, 1.0 - p.x) } else { p };
+    (Vec2::new(p.x.copysign(w.x), p.y.copysign(w.y)) + Vec2::ONE) * 0.5
 }
 
 /// Cosine-weighted on the hemisphere about `+z` (Malley's method).
@@ -148,6 +177,8 @@ mod tests {
                 let u = Vec2::new((i as f32 + 0.3) / 40.0, (j as f32 + 0.6) / 40.0);
                 assert!((disk_to_square(square_to_disk(u)) - u).length() < 1e-5, "{u}");
                 assert!((sphere_to_square(square_to_sphere(u)) - u).length() < 1e-5, "{u}");
+                let back = equal_area_sphere_to_square(square_to_equal_area_sphere(u));
+                assert!((back - u).length() < 1e-5, "{u} {back}");
             }
         }
     }

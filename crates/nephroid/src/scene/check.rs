@@ -1,10 +1,10 @@
 //! What a scene must satisfy to be rendered.
 
+use super::check_lights::check_lights;
 use super::{Scene, SceneError, Subject};
 use crate::camera::Projection;
 use crate::color::Rgb;
 use crate::film::Filter;
-use crate::light::LightKind;
 use crate::material::{self, Material};
 use crate::math::Transform;
 use crate::medium;
@@ -34,10 +34,10 @@ pub(crate) fn check(scene: &Scene) -> Vec<SceneError> {
     problems.0
 }
 
-struct Problems(Vec<SceneError>);
+pub(super) struct Problems(Vec<SceneError>);
 
 impl Problems {
-    fn add(&mut self, subject: Subject, message: impl Into<String>) {
+    pub fn add(&mut self, subject: Subject, message: impl Into<String>) {
         self.0.push(SceneError { subject, message: message.into() });
     }
 }
@@ -294,7 +294,7 @@ fn check_groups(scene: &Scene, problems: &mut Problems) {
     }
 }
 
-fn check_emission(
+pub(super) fn check_emission(
     scene: &Scene,
     emission: crate::handle::Handle<Texture>,
     subject: Subject,
@@ -325,55 +325,7 @@ fn check_emission(
     }
 }
 
-fn check_lights(scene: &Scene, problems: &mut Problems) {
-    for (i, light) in scene.lights.iter().enumerate() {
-        let subject = Subject::Light(i);
-        match &light.kind {
-            LightKind::Point { position, intensity } => {
-                finite(position.is_finite(), "position", subject, problems);
-                check_light_value(*intensity, "intensity", subject, problems);
-            }
-            LightKind::Spot { to_world, intensity, cutoff_deg, beam_width_deg, texture } => {
-                check_transform(to_world, subject, problems);
-                check_rigid(to_world, subject, problems);
-                check_light_value(*intensity, "intensity", subject, problems);
-                if !(*cutoff_deg > 0.0 && *cutoff_deg < 90.0) {
-                    problems.add(
-                        subject,
-                        format!("a cutoff angle of {cutoff_deg}: write one between 0 and 90 degrees"),
-                    );
-                }
-                if !(*beam_width_deg >= 0.0 && beam_width_deg <= cutoff_deg) {
-                    problems.add(subject, "the beam width must lie between 0 and the cutoff angle");
-                }
-                if let Some(texture) = texture {
-                    check_emission(scene, *texture, subject, problems);
-                }
-            }
-            LightKind::Directional { direction, irradiance } => {
-                if direction.try_normalize().is_none() {
-                    problems.add(subject, "its direction must have a length");
-                }
-                check_light_value(*irradiance, "irradiance", subject, problems);
-            }
-            LightKind::Constant { radiance } => check_light_value(*radiance, "radiance", subject, problems),
-            LightKind::Environment { image, scale, to_world } => {
-                check_transform(to_world, subject, problems);
-                check_rigid(to_world, subject, problems);
-                if !scene.textures.images.contains(*image) {
-                    problems.add(subject, "its image does not exist");
-                } else if scene.textures.images[*image].pixels.iter().any(|p| p.min_channel() < 0.0) {
-                    problems.add(subject, "a pixel of its image is negative: light cannot be");
-                }
-                if !(*scale >= 0.0 && scale.is_finite()) {
-                    problems.add(subject, format!("a scale of {scale}: write a number that is not negative"));
-                }
-            }
-        }
-    }
-}
-
-fn check_transform(transform: &Transform, subject: Subject, problems: &mut Problems) {
+pub(super) fn check_transform(transform: &Transform, subject: Subject, problems: &mut Problems) {
     if !transform.is_invertible() {
         problems.add(
             subject,
@@ -382,16 +334,7 @@ fn check_transform(transform: &Transform, subject: Subject, problems: &mut Probl
     }
 }
 
-fn check_rigid(transform: &Transform, subject: Subject, problems: &mut Problems) {
-    if transform.is_invertible() && transform.uniform_scale().is_none() {
-        problems.add(
-            subject,
-            "its `to_world` may turn, mirror and scale alike on each axis, but not stretch or shear",
-        );
-    }
-}
-
-fn check_light_value(value: Rgb, name: &str, subject: Subject, problems: &mut Problems) {
+pub(super) fn check_light_value(value: Rgb, name: &str, subject: Subject, problems: &mut Problems) {
     if !(value.is_finite() && value.min_channel() >= 0.0) {
         let [r, g, b] = value.to_array();
         problems.add(
@@ -407,7 +350,7 @@ fn positive(value: f32, name: &str, subject: Subject, problems: &mut Problems) {
     }
 }
 
-fn finite(is_finite: bool, name: &str, subject: Subject, problems: &mut Problems) {
+pub(super) fn finite(is_finite: bool, name: &str, subject: Subject, problems: &mut Problems) {
     if !is_finite {
         problems.add(subject, format!("its {name} must be finite"));
     }
@@ -419,7 +362,7 @@ mod tests {
     use crate::camera::{Camera, FovAxis};
     use crate::film::FilmSettings;
     use crate::handle::Arena;
-    use crate::light::Light;
+    use crate::light::{Light, LightKind};
     use crate::math::{Affine2, DVec3, Vec2, Vec3};
     use crate::medium::{Boundary, Grid, GridValues, Medium, Phase};
     use crate::shape::Group;

@@ -1,6 +1,7 @@
 //! A scene: plain data, after references, units and defaults of its file are resolved.
 
 mod check;
+mod check_lights;
 mod error;
 
 pub(crate) use check::check;

@@ -105,7 +105,7 @@ pub(crate) fn direct_light(
     sampler: &mut Sampler,
 ) -> Rgb {
     let lit = Lit { scatterer: Scatterer::Surface { hit, bsdf }, wo, inside };
-    if !bsdf.has_glossy_lobe() && !world.has_sky() {
+    if !bsdf.has_glossy_lobe() && !world.has_wide_sky() {
         return sample_lights(world, &lit, lights, Partner::None, sampler);
     }
     let by_lights = sample_lights(world, &lit, lights, Partner::BsdfSample, sampler);

@@ -7,7 +7,8 @@ use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
 use crate::light::{
-    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Light, LightKind, Spot, Target,
+    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Goniometric, Light, LightKind, Projector,
+    Spot, Sun, Target,
 };
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
@@ -15,6 +16,7 @@ use crate::medium::{Matter, Media};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
 use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
+use crate::texture::Image;
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -71,7 +73,7 @@ impl World {
             cutouts,
             transparent,
             surface_lights: emitters.len(),
-            sky: emitters.iter().any(Emitter::is_sky),
+            wide_sky: emitters.iter().any(Emitter::is_wide_sky),
             emitters,
             by_power,
             for_direct,
@@ -277,7 +279,7 @@ fn is_convex(shape: &Shape) -> bool {
     }
 }
 
-/// `None` for an environment without light.
+/// `None` for one whose image is without light.
 fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
     let (kind, power): (EmitterKind, Rgb) = match &light.kind {
         &LightKind::Point { position, intensity } => {
@@ -296,10 +298,30 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
             let sky = ConstantSky { radiance, target };
             (EmitterKind::Constant(sky), sky.power())
         }
-        LightKind::Environment { image, scale, to_world } => {
-            let map = EnvironmentMap::new(&scene.textures, *image, *scale, to_world, target)?;
+        LightKind::Environment { image, mapping, scale, to_world } => {
+            let map = EnvironmentMap::new(&scene.textures, (*image, *mapping), *scale, to_world, target)?;
             let power = map.power();
             (EmitterKind::Environment(map), power)
+        }
+        &LightKind::Sun { direction, irradiance, angular_radius_deg } if angular_radius_deg > 0.0 => {
+            let sun = Sun::new(direction.normalize(), irradiance, angular_radius_deg, target);
+            (EmitterKind::Sun(sun), sun.power())
+        }
+        &LightKind::Sun { direction, irradiance, .. } => (
+            EmitterKind::Directional { direction: -direction.normalize(), irradiance, target },
+            irradiance * target.silhouette(),
+        ),
+        LightKind::Goniometric { to_world, intensity, table, mapping } => {
+            let lamp = Goniometric::new(&scene.textures, to_world, *intensity, (*table, *mapping))?;
+            let power = lamp.power();
+            (EmitterKind::Goniometric(Box::new(lamp)), power)
+        }
+        &LightKind::Projector { ref to_world, image, scale, unit, fov_deg, fov_axis } => {
+            let Image { width, height, .. } = scene.textures.images[image];
+            let half = fov_axis.half_size(fov_deg, width as f32, height as f32);
+            let lamp = Projector::new(&scene.textures, to_world, image, scale, unit, half)?;
+            let power = lamp.power();
+            (EmitterKind::Projector(Box::new(lamp)), power)
         }
     };
     Some(Emitter { name: light.name.clone(), kind, power })

@@ -49,8 +49,8 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
-    /// Whether any of them is a sky.
-    sky: bool,
+    /// Whether any of them is a sky of which most directions bring some.
+    wide_sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
@@ -182,9 +182,9 @@ impl World {
         &self.camera
     }
 
-    /// Whether light comes from a sky, in all directions.
-    pub(crate) fn has_sky(&self) -> bool {
-        self.sky
+    /// Whether light comes from a sky, in most directions.
+    pub(crate) fn has_wide_sky(&self) -> bool {
+        self.wide_sky
     }
 
     /// Whether any lamp is a Dirac one, which no path meets by chance.

@@ -11,7 +11,7 @@ use crate::camera::{Camera, FovAxis, Projection};
 use crate::color::Rgb;
 use crate::film::{FilmSettings, Filter};
 use crate::handle::{Arena, Handle};
-use crate::light::{Light, LightKind, Source};
+use crate::light::{EnvironmentMapping, Light, LightKind, Source};
 use crate::material::Material;
 use crate::math::{DVec3, Ray, Transform, Vec2, Vec3};
 use crate::medium::{Boundary, Media};
@@ -88,7 +88,15 @@ fn scene(uneven: bool, plane: bool) -> World {
         image.pixels[2] = Rgb::new(3.0, 2.0, 1.0);
         let image = scene.textures.images.push(image);
         let upright = Transform::rotate(DVec3::X, 90.0);
-        light(&mut scene, LightKind::Environment { image, scale: 1.0, to_world: upright });
+        light(
+            &mut scene,
+            LightKind::Environment {
+                image,
+                mapping: EnvironmentMapping::Equirectangular,
+                scale: 1.0,
+                to_world: upright,
+            },
+        );
     } else {
         light(&mut scene, LightKind::Constant { radiance: Rgb::splat(0.3) });
     }
