@@ -106,7 +106,7 @@ const KINDS: [Kind; 14] = [
         for (i, pixel) in image.pixels.iter_mut().enumerate() {
             *pixel = Rgb::new(0.2, 0.3, 0.5) * (i * 7 % 11) as f32;
         }
-        let image = b.scene.textures.images.push(image);
+        let image = b.scene.textures.images.push(image.into());
         let to_world = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 70.0);
         b.light(LightKind::Environment {
             mapping: EnvironmentMapping::Equirectangular,

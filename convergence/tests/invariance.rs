@@ -73,7 +73,7 @@ fn room(scale: f64, place: Transform) -> World {
     b.light(LightKind::Directional { direction, irradiance: Rgb::splat(0.7) });
     let mut image = Image::filled(4, 2, Rgb::splat(0.2));
     image.pixels[5] = Rgb::new(1.0, 0.7, 0.4);
-    let image = b.scene.textures.images.push(image);
+    let image = b.scene.textures.images.push(image.into());
     b.light(LightKind::Environment {
         mapping: EnvironmentMapping::Equirectangular,
         image,

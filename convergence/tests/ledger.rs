@@ -68,7 +68,7 @@ fn sky_image(b: &mut Builder) -> LightKind {
     }
     LightKind::Environment {
         mapping: EnvironmentMapping::Equirectangular,
-        image: b.scene.textures.images.push(image),
+        image: b.scene.textures.images.push(image.into()),
         scale: 0.3,
         to_world: Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 70.0),
     }

@@ -178,7 +178,7 @@ fn under_spots_suns_and_skies() {
     let direction = Vec3::new(0.4, -1.0, -0.3).normalize();
     b.light(LightKind::Directional { direction, irradiance: Rgb::new(0.2, 1.0, 0.2) });
     let pixels = (0..32).map(|i| Rgb::new(0.1, 0.1 * (i % 8) as f32, 0.5 + (i / 8) as f32 * 0.2)).collect();
-    let image = b.scene.textures.images.push(Image { width: 8, height: 4, pixels });
+    let image = b.scene.textures.images.push(Image { width: 8, height: 4, pixels }.into());
     b.light(LightKind::Environment {
         mapping: EnvironmentMapping::Equirectangular,
         image,

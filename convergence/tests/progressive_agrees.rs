@@ -174,7 +174,7 @@ fn under_a_spot_and_a_sky() {
     });
     let mut image = Image::filled(4, 2, Rgb::splat(0.2));
     image.pixels[1] = Rgb::new(1.0, 0.7, 0.4);
-    let image = b.scene.textures.images.push(image);
+    let image = b.scene.textures.images.push(image.into());
     b.light(LightKind::Environment {
         mapping: EnvironmentMapping::Equirectangular,
         image,

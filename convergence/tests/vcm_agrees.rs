@@ -177,7 +177,7 @@ fn under_an_environment_map() {
     let mut image = Image::filled(8, 4, Rgb::splat(0.2));
     image.pixels[11] = Rgb::new(6.0, 5.0, 4.0);
     image.pixels[12] = Rgb::new(8.0, 5.0, 3.0);
-    let image = b.scene.textures.images.push(image);
+    let image = b.scene.textures.images.push(image.into());
     b.light(LightKind::Environment {
         mapping: EnvironmentMapping::Equirectangular,
         image,

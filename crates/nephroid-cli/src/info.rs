@@ -146,6 +146,10 @@ fn texture(texture: &Texture) -> &'static str {
         Texture::Constant(_) => "constant",
         Texture::Bitmap(_) => "bitmap",
         Texture::Checkerboard(_) => "checkerboard",
+        Texture::VertexColor => "mesh_attribute",
+        Texture::Scale { .. } => "scale",
+        Texture::Mix { .. } => "mix",
+        Texture::Channel { .. } => "channel",
     }
 }
 

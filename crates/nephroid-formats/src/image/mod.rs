@@ -21,7 +21,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use nephroid::color::Rgb;
-use nephroid::texture::Image;
+use nephroid::texture::{Image, Pixels, Pixmap, Plane};
 
 pub use error::{ImageError, ImageProblem};
 pub use limits::{MAX_PIXELS, MAX_SIDE};
@@ -93,30 +93,58 @@ pub fn read_image(path: &Path) -> Result<ImageFile, ImageError> {
 
 /// [`read_image`] of the contents of a file.
 pub fn read_image_bytes(bytes: &[u8]) -> Result<ImageFile, ImageProblem> {
-    decode(bytes, false)
+    let TextureFile { image: Pixmap { width, height, pixels, .. }, format, non_finite } =
+        decode(bytes, false)?;
+    let pixels = match pixels {
+        Pixels::Linear(pixels) => pixels,
+        coded => coded.iter().collect(),
+    };
+    Ok(ImageFile { image: Image { width, height, pixels }, format, non_finite })
+}
+
+/// An image as it was read for a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureFile {
+    /// Its pixels, in bytes where the file has no more. Grey is repeated in all channels, colours are not multiplied by
+    /// alpha. There is no alpha plane where all pixels are opaque.
+    pub image: Pixmap,
+    /// What the file was.
+    pub format: ImageFormat,
+    /// Pixels of which the file has a channel that is NaN or infinite.
+    pub non_finite: usize,
 }
 
 /// Reads an image for use on a surface or as an environment. With `raw` the numbers of a PNG or
-/// JPEG are taken as they are, from 0 to 1; without it they are decoded with the curve of sRGB.
-/// Pixels that are not finite become black, and are counted.
-pub fn read_texture(bytes: &[u8], raw: bool) -> Result<ImageFile, ImageProblem> {
+/// JPEG are taken as they are, from 0 to 1; without it they are decoded with the curve of sRGB. Alpha
+/// is a number as it is. Pixels that are not finite become black, and are counted; opacities become zero.
+pub fn read_texture(bytes: &[u8], raw: bool) -> Result<TextureFile, ImageProblem> {
     let mut file = decode(bytes, raw)?;
-    for pixel in file.image.pixels.iter_mut().filter(|p| !p.is_finite()) {
-        *pixel = Rgb::BLACK;
+    if let Pixels::Linear(pixels) = &mut file.image.pixels {
+        for pixel in pixels.iter_mut().filter(|p| !p.is_finite()) {
+            *pixel = Rgb::BLACK;
+        }
+    }
+    if let Some(Plane::Linear(alpha)) = &mut file.image.alpha {
+        for value in alpha.iter_mut().filter(|v| !v.is_finite()) {
+            *value = 0.0;
+        }
     }
     Ok(file)
 }
 
-fn decode(bytes: &[u8], raw: bool) -> Result<ImageFile, ImageProblem> {
+fn decode(bytes: &[u8], raw: bool) -> Result<TextureFile, ImageProblem> {
     let format = ImageFormat::of(bytes).ok_or_else(|| ImageProblem::unknown_format(bytes))?;
     let decoder = || match format {
-        ImageFormat::Exr => read_exr::decode(bytes),
+        ImageFormat::Exr => read_exr::decode(bytes).map(Pixmap::from),
         ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr => raster::decode(bytes, format, raw),
     };
     // The decoders are other people's code on other people's bytes: should one give up in a panic,
     // the file is to blame and the program lives on.
     let image = catch_unwind(AssertUnwindSafe(decoder))
         .unwrap_or_else(|_| Err(ImageProblem::Damaged { format, reason: "it makes no sense".to_owned() }))?;
-    let non_finite = image.pixels.iter().filter(|p| !p.is_finite()).count();
-    Ok(ImageFile { image, format, non_finite })
+    let non_finite = match &image.pixels {
+        Pixels::Linear(pixels) => pixels.iter().filter(|p| !p.is_finite()).count(),
+        Pixels::Grey(..) | Pixels::Color(..) => 0,
+    };
+    Ok(TextureFile { image, format, non_finite })
 }

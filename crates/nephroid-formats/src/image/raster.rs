@@ -4,13 +4,13 @@ use ::image::codecs::{hdr::HdrDecoder, jpeg::JpegDecoder, png::PngDecoder};
 use ::image::error::ImageError as DecodeError;
 use ::image::{DynamicImage, ImageDecoder};
 use nephroid::color::{Rgb, srgb};
-use nephroid::texture::Image;
+use nephroid::texture::{Decoding, Pixels, Pixmap, Plane};
 
 use super::limits::{check_held, check_size};
 use super::{ImageFormat, ImageProblem};
 
 /// Decodes PNG, JPEG and Radiance HDR.
-pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Image, ImageProblem> {
+pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Pixmap, ImageProblem> {
     let problem = |error| problem(format, error);
     let reader = Cursor::new(bytes);
     let pixels = match format {
@@ -24,7 +24,7 @@ pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Image, Ima
         // A run of a row of any length takes some 16 bytes, and a pixel 96 bits.
         _ => pixels(HdrDecoder::new_nonstrict(reader).map_err(problem)?, format, 4096 * 12, bytes)?,
     };
-    Ok(to_linear(&pixels, raw))
+    Ok(kept(pixels, raw))
 }
 
 fn pixels(
@@ -65,26 +65,53 @@ fn check_end_of_jpeg(bytes: &[u8]) -> Result<(), ImageProblem> {
     damaged("it has no image data")
 }
 
-fn to_linear(pixels: &DynamicImage, raw: bool) -> Image {
+fn kept(pixels: DynamicImage, raw: bool) -> Pixmap {
     let (width, height) = (pixels.width(), pixels.height());
-    let pixels = match pixels {
-        DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| Rgb::from(p.0)).collect(),
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => {
-            let value = |v: u16| f32::from(v) / 65_535.0;
-            let linear = |v: u16| if raw { value(v) } else { srgb::decode(value(v)) };
-            pixels.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(linear))).collect()
+    let decoding = || if raw { Decoding::linear() } else { Decoding::srgb() };
+    let linear = |v: u16| {
+        let value = f32::from(v) / 65_535.0;
+        if raw { value } else { srgb::decode(value) }
+    };
+    let of_words = |words: [u16; 3]| Rgb::from(words.map(linear));
+    let (pixels, alpha) = match pixels {
+        DynamicImage::ImageRgb32F(p) => (Pixels::Linear(p.pixels().map(|p| Rgb::from(p.0)).collect()), None),
+        DynamicImage::ImageLuma8(p) => (Pixels::Grey(p.into_raw(), decoding()), None),
+        DynamicImage::ImageRgb8(p) => (Pixels::Color(p.pixels().map(|p| p.0).collect(), decoding()), None),
+        DynamicImage::ImageLumaA8(p) => {
+            let (values, alpha) = p.pixels().map(|p| (p.0[0], p.0[1])).unzip();
+            (Pixels::Grey(values, decoding()), bytes_of_alpha(alpha))
+        }
+        DynamicImage::ImageLuma16(_) | DynamicImage::ImageRgb16(_) => {
+            (Pixels::Linear(pixels.to_rgb16().pixels().map(|p| of_words(p.0)).collect()), None)
+        }
+        DynamicImage::ImageLumaA16(_) | DynamicImage::ImageRgba16(_) => {
+            let (colors, alpha) = pixels
+                .to_rgba16()
+                .pixels()
+                .map(|p| {
+                    let [r, g, b, a] = p.0;
+                    (of_words([r, g, b]), f32::from(a) / 65_535.0)
+                })
+                .unzip();
+            (Pixels::Linear(colors), plane_of_alpha(alpha))
         }
         other => {
-            let value = |v: u8| f32::from(v) / 255.0;
-            let linear: Vec<f32> =
-                (0..=255).map(|v| if raw { value(v) } else { srgb::decode(value(v)) }).collect();
-            other.to_rgb8().pixels().map(|p| Rgb::from(p.0.map(|v| linear[usize::from(v)]))).collect()
+            let (values, alpha) =
+                other.to_rgba8().pixels().map(|p| ([p.0[0], p.0[1], p.0[2]], p.0[3])).unzip();
+            (Pixels::Color(values, decoding()), bytes_of_alpha(alpha))
         }
     };
-    Image { width, height, pixels }
+    Pixmap { width, height, pixels, alpha }
+}
+
+/// Nothing where all is opaque.
+fn bytes_of_alpha(alpha: Vec<u8>) -> Option<Plane> {
+    alpha.iter().any(|&a| a != 255).then_some(Plane::Bytes(alpha))
+}
+
+/// Nothing where all is opaque.
+pub fn plane_of_alpha(alpha: Vec<f32>) -> Option<Plane> {
+    alpha.iter().any(|&a| a != 1.0).then_some(Plane::Linear(alpha))
 }
 
 fn problem(format: ImageFormat, error: DecodeError) -> ImageProblem {

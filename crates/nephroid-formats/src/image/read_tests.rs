@@ -18,7 +18,7 @@ fn encoded(image: &DynamicImage, kind: Kind) -> Vec<u8> {
 fn raw(bytes: &[u8]) -> Vec<Rgb> {
     let file = read_texture(bytes, true).unwrap();
     assert_eq!((file.image.width, file.image.height), (2, 1));
-    file.image.pixels
+    file.image.pixels.iter().collect()
 }
 
 /// An image of two pixels from their samples.
@@ -75,9 +75,9 @@ fn eight_and_sixteen_bits_are_decoded_from_srgb_unless_raw() {
     let sixteen = encoded(&two!(ImageLuma16, [128u16 * 257, 65_535]), Kind::Png);
     for bytes in [eight, sixteen] {
         let file = read_texture(&bytes, false).unwrap();
-        assert!((file.image.pixels[0].g - 0.215_860_5).abs() < 1e-6, "{file:?}");
-        assert!((file.image.pixels[1].g - 1.0).abs() < 1e-6);
-        assert_eq!(read_image_bytes(&bytes).unwrap(), file);
+        assert!((file.image.pixel(0, 0).g - 0.215_860_5).abs() < 1e-6, "{file:?}");
+        assert!((file.image.pixel(1, 0).g - 1.0).abs() < 1e-6);
+        assert!(read_image_bytes(&bytes).unwrap().image.pixels.into_iter().eq(file.image.pixels.iter()));
         assert!((raw(&bytes)[0].g - 128.0 / 255.0).abs() < 1e-6);
     }
 }
@@ -102,7 +102,7 @@ fn radiance_hdr_is_linear() {
     let bytes = encoded(&image, Kind::Hdr);
     let file = read_texture(&bytes, false).unwrap();
     assert_eq!(file.format, ImageFormat::Hdr);
-    assert_eq!(file.image.pixels, [Rgb::new(0.5, 1.0, 64.0), Rgb::BLACK]);
+    assert!(file.image.pixels.iter().eq([Rgb::new(0.5, 1.0, 64.0), Rgb::BLACK]));
     // The other signature that is in use, and a line that the decoder has no use for.
     let text = String::from_utf8_lossy(&bytes).find('\n').unwrap();
     let other = [b"#?RGBE\nGAMMA=1", &bytes[text..]].concat();
@@ -174,7 +174,7 @@ fn broken_pixels_are_counted_and_black_in_textures() {
     assert!(file.image.pixels[0].r.is_nan() && file.image.pixels[2].r.is_infinite());
     let texture = read_texture(&bytes, false).unwrap();
     assert_eq!(texture.non_finite, 2);
-    assert_eq!(texture.image.pixels, [Rgb::BLACK, Rgb::splat(2.0), Rgb::BLACK]);
+    assert!(texture.image.pixels.iter().eq([Rgb::BLACK, Rgb::splat(2.0), Rgb::BLACK]));
 }
 
 #[test]

@@ -51,7 +51,7 @@ mod tests {
         let image = read_texture(&bytes, true).unwrap().image;
         let expected = [[0.0, 255.0, 128.0], [0.0, 255.0, 0.0], [1.0, 2.0, 255.0]];
         for (found, expected) in image.pixels.iter().zip(expected) {
-            assert_eq!((*found * 255.0).to_array().map(f32::round), expected);
+            assert_eq!((found * 255.0).to_array().map(f32::round), expected);
         }
         assert_eq!((image.width, image.height), (1, 3));
         assert!(bytes.windows(4).any(|w| w == b"sRGB"));

@@ -8,7 +8,7 @@ use nephroid::light::Light;
 use nephroid::material::Material;
 use nephroid::medium::{Media, Medium};
 use nephroid::shape::{Group, Instance, Mesh, Shape};
-use nephroid::texture::{Image, Texture, Textures};
+use nephroid::texture::{Pixmap, Texture, Textures};
 
 use super::document::Element;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
@@ -60,7 +60,7 @@ pub(super) struct Reader<'t> {
     pub(super) material_of: BTreeMap<usize, Outcome<Material>>,
     pub(super) group_of: BTreeMap<usize, Outcome<Group>>,
     pub(super) medium_of: BTreeMap<usize, Outcome<Medium>>,
-    pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Image>>,
+    pub(super) image_of: BTreeMap<(PathBuf, bool), Handle<Pixmap>>,
     pub(super) mesh_of: BTreeMap<MeshKey, Handle<Mesh>>,
     pub(super) grid_of: BTreeMap<PathBuf, StoredGrid>,
     /// The material of shapes without one, and of lamps without one.

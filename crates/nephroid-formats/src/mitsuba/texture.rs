@@ -3,7 +3,7 @@
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::math::{Affine2, Transform, Vec2};
-use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Image, Texture, Wrap};
+use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Pixmap, Texture, Wrap};
 
 use super::document::Element;
 use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
@@ -192,7 +192,7 @@ impl<'t> Reader<'t> {
     }
 
     /// The image that a plugin's `filename` names, read once for each way of decoding.
-    pub(super) fn image_property(&mut self, plugin: &Plugin<'t>, raw: bool) -> Option<Handle<Image>> {
+    pub(super) fn image_property(&mut self, plugin: &Plugin<'t>, raw: bool) -> Option<Handle<Pixmap>> {
         let Some((name, at)) = plugin.text("filename") else {
             if !plugin.has("filename") {
                 let message = format!("{} \"{}\" lacks a filename", plugin.element.tag, plugin.kind);

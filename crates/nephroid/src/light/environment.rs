@@ -8,7 +8,7 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::real::sin;
 use crate::math::{DMat3, Transform, Vec2, Vec3, warp};
-use crate::texture::{Image, Textures};
+use crate::texture::{Pixmap, Textures};
 
 /// The same radiance from everywhere.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ impl EnvironmentMap {
     /// `None` if the image holds no light.
     pub fn new(
         textures: &Textures,
-        (image, mapping): (Handle<Image>, EnvironmentMapping),
+        (image, mapping): (Handle<Pixmap>, EnvironmentMapping),
         scale: f32,
         to_world: &Transform,
         target: Target,

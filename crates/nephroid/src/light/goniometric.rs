@@ -7,7 +7,7 @@ use super::sphere_image::{SphereImage, SphereSample};
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{DMat3, Ray, Transform, Vec3};
-use crate::texture::{Image, Textures};
+use crate::texture::{Pixmap, Textures};
 
 /// A point light whose intensity depends on the direction as a table tells.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ impl Goniometric {
         textures: &Textures,
         to_world: &Transform,
         intensity: Rgb,
-        (table, mapping): (Handle<Image>, EnvironmentMapping),
+        (table, mapping): (Handle<Pixmap>, EnvironmentMapping),
     ) -> Option<Self> {
         let rotation = to_world.0.matrix3;
         Some(Self {

@@ -29,7 +29,7 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Transform, Vec3};
 use crate::medium::Medium;
-use crate::texture::{Image, Texture};
+use crate::texture::{Pixmap, Texture};
 
 /// A light without a surface, as a scene describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ pub enum LightKind {
     /// Radiance from an image around the scene.
     Environment {
         /// W/(m²·sr) before scaling.
-        image: Handle<Image>,
+        image: Handle<Pixmap>,
         /// How directions lie in the image.
         mapping: EnvironmentMapping,
         /// Multiplies the image.
@@ -104,7 +104,7 @@ pub enum LightKind {
         /// W/sr where the table is 1.
         intensity: Rgb,
         /// Multiplies the intensity in the direction, in local space, in which light leaves.
-        table: Handle<Image>,
+        table: Handle<Pixmap>,
         /// How directions lie in the table.
         mapping: EnvironmentMapping,
     },
@@ -114,7 +114,7 @@ pub enum LightKind {
         /// Its place and direction.
         to_world: Transform,
         /// What is shown.
-        image: Handle<Image>,
+        image: Handle<Pixmap>,
         /// Multiplies the image.
         scale: Rgb,
         /// What the image says.

@@ -5,14 +5,14 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Frame, Ray, Transform, Vec2, Vec3};
 use crate::sampling::Discrete2d;
-use crate::texture::{Image, Textures, Wrap};
+use crate::texture::{Pixmap, Textures, Wrap};
 
 /// A pinhole that shows an image in a frustum.
 #[derive(Clone, Debug)]
 pub(crate) struct Projector {
     pub position: Vec3,
     frame: Frame,
-    image: Handle<Image>,
+    image: Handle<Pixmap>,
     scale: Rgb,
     unit: ProjectorUnit,
     /// Half the width and height of the image at distance 1.
@@ -28,7 +28,7 @@ impl Projector {
     pub fn new(
         textures: &Textures,
         to_world: &Transform,
-        image: Handle<Image>,
+        image: Handle<Pixmap>,
         scale: Rgb,
         unit: ProjectorUnit,
         half: Vec2,
@@ -171,20 +171,21 @@ fn solid_angle_to(x: f64, y: f64) -> f64 {
 }
 
 /// A pixel of an image whose edge goes on.
-fn texel(image: &Image, x: i64, y: i64) -> Rgb {
+fn texel(image: &Pixmap, x: i64, y: i64) -> Rgb {
     image.pixel(Wrap::Clamp.index(x, image.width), Wrap::Clamp.index(y, image.height))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::Image;
 
     /// A camera at its place would see the image as it is: first row up, first column towards +x, which is left.
     #[test]
     fn the_image_stands_upright_and_a_screen_shows_it_evenly() {
         let mut textures = Textures::default();
         let pixels = (1..=4).map(|i| Rgb::splat(i as f32)).collect();
-        let image = textures.images.push(Image { width: 2, height: 2, pixels });
+        let image = textures.images.push(Image { width: 2, height: 2, pixels }.into());
         let half = Vec2::new(0.6, 0.6);
         let twice = Transform::scale(crate::math::DVec3::splat(2.0));
         let of = |unit| Projector::new(&textures, &twice, image, Rgb::WHITE, unit, half).expect("light");

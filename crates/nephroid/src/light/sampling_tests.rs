@@ -14,7 +14,7 @@ use crate::medium::Boundary;
 use crate::medium::Media;
 use crate::scene::Scene;
 use crate::shape::{Geometry, Mesh, Shape};
-use crate::texture::{Image, Textures};
+use crate::texture::{Image, Pixmap, Textures};
 use crate::world::World;
 
 /// More than the tests of this file.
@@ -123,7 +123,7 @@ fn surfaces_are_sampled_with_the_density_they_claim() {
 fn sky(kind: LightKind, images: &[Image]) -> World {
     let mut scene = empty();
     for image in images {
-        scene.textures.images.push(image.clone());
+        scene.textures.images.push(image.clone().into());
     }
     scene.lights.push(Light { name: String::new(), kind, medium: None });
     World::new(scene).expect("a sound scene")
@@ -139,7 +139,7 @@ fn skies_are_sampled_with_the_density_they_claim() {
         *pixel = Rgb::new(0.3, 1.0, 0.5) * (i * 5 % 7) as f32;
     }
     image.pixels[12] = Rgb::splat(100.0);
-    let handle = Arena::default().push(image.clone());
+    let handle = Arena::default().push(Pixmap::from(image.clone()));
     // Its zenith along +z, as the cells of the test lie, and askew.
     for (seed, turn) in
         [(21, Transform::rotate(DVec3::X, 90.0)), (22, Transform::rotate(DVec3::new(0.3, 1.0, -0.5), 100.0))]

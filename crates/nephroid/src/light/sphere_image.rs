@@ -6,12 +6,12 @@ use crate::handle::Handle;
 use crate::math::real::{atan2, sin_cos};
 use crate::math::{Vec2, Vec3, warp};
 use crate::sampling::Discrete2d;
-use crate::texture::{Image, Textures, Wrap};
+use crate::texture::{Pixmap, Textures, Wrap};
 
 /// An image of all directions, read between its pixels and sampled by its brightness. Directions are local.
 #[derive(Clone, Debug)]
 pub(super) struct SphereImage {
-    image: Handle<Image>,
+    image: Handle<Pixmap>,
     mapping: EnvironmentMapping,
     /// Density over the image, ∝ mean brightness of the neighbourhood, and where rows differ in solid angle that of the
     /// row: positive wherever interpolation gives light.
@@ -33,7 +33,7 @@ pub(super) struct SphereSample {
 
 impl SphereImage {
     /// `None` if the image holds no light. A square one is needed for the equal-area mapping.
-    pub fn new(textures: &Textures, image: Handle<Image>, mapping: EnvironmentMapping) -> Option<Self> {
+    pub fn new(textures: &Textures, image: Handle<Pixmap>, mapping: EnvironmentMapping) -> Option<Self> {
         let pixels = &textures.images[image];
         let (w, h) = (pixels.width, pixels.height);
         let mut weights = Vec::with_capacity(w as usize * h as usize);
@@ -163,7 +163,7 @@ fn share_of_row(y: u32, h: u32) -> f64 {
 
 /// A pixel, of those beyond the edges the one that shows what lies there: in longitude a rectangle repeats, while a square
 /// is folded along the middles of its edges.
-fn texel(image: &Image, mapping: EnvironmentMapping, x: i64, y: i64) -> Rgb {
+fn texel(image: &Pixmap, mapping: EnvironmentMapping, x: i64, y: i64) -> Rgb {
     match mapping {
         EnvironmentMapping::Equirectangular => {
             image.pixel(Wrap::Repeat.index(x, image.width), Wrap::Clamp.index(y, image.height))
@@ -188,10 +188,11 @@ fn texel(image: &Image, mapping: EnvironmentMapping, x: i64, y: i64) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::Image;
 
     fn of(image: Image, mapping: EnvironmentMapping) -> (Textures, SphereImage) {
         let mut textures = Textures::default();
-        let handle = textures.images.push(image);
+        let handle = textures.images.push(image.into());
         let sphere = SphereImage::new(&textures, handle, mapping).unwrap();
         (textures, sphere)
     }

@@ -150,7 +150,7 @@ impl Material {
     /// The lobes seen from the side the normal points to, or from the other one.
     fn lobes(&self, textures: &Textures, surface: &Surface, in_front: bool) -> Lobes {
         let read = |texture: Handle<Texture>| {
-            textures.eval(texture, surface.uv).map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 })
+            textures.eval(texture, surface.at).map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 })
         };
         match *self {
             Self::Null => Lobes::Null,

@@ -5,11 +5,12 @@ use super::{Scene, SceneError, Subject};
 use crate::camera::Projection;
 use crate::color::Rgb;
 use crate::film::Filter;
+use crate::handle::Handle;
 use crate::material::{self, Material};
 use crate::math::Transform;
 use crate::medium;
 use crate::shape::{Geometry, Mesh, Shape};
-use crate::texture::Texture;
+use crate::texture::{Pixmap, Texture};
 
 /// Photons tell media apart by numbers of 16 bits, of which the last is none.
 const MAX_MEDIA: usize = 65_535;
@@ -97,12 +98,15 @@ fn check_film(scene: &Scene, problems: &mut Problems) {
     }
 }
 
+/// No texture asks more others for the colour of a point, however they refer to one another.
+const MOST_LOOKUPS: u64 = 1000;
+
 fn check_textures(scene: &Scene, problems: &mut Problems) {
     for (i, image) in scene.textures.images.iter().enumerate() {
         let subject = Subject::Image(i);
-        if image.pixels.is_empty()
-            || image.pixels.len() as u64 != u64::from(image.width) * u64::from(image.height)
-        {
+        let size = u64::from(image.width) * u64::from(image.height);
+        let of_alpha = image.alpha.as_ref().map_or(size, |plane| plane.len() as u64);
+        if image.pixels.is_empty() || image.pixels.len() as u64 != size || of_alpha != size {
             problems.add(subject, "the image is empty or its size does not fit its pixels");
         }
         let bad = image.pixels.iter().filter(|p| !p.is_finite()).count();
@@ -110,18 +114,33 @@ fn check_textures(scene: &Scene, problems: &mut Problems) {
             problems.add(subject, format!("{bad} pixels are infinite or not a number"));
         }
     }
+    let mut lookups: Vec<u64> = Vec::new();
     for (i, texture) in scene.textures.list.iter().enumerate() {
         let sound = match texture {
             Texture::Constant(value) => value.is_finite(),
             Texture::Bitmap(b) => scene.textures.images.contains(b.image) && b.to_uv.is_finite(),
-            Texture::Checkerboard(c) => c.color0.index() < i && c.color1.index() < i && c.to_uv.is_finite(),
+            Texture::Checkerboard(c) => c.to_uv.is_finite(),
+            Texture::Channel { channel, .. } => *channel <= 3,
+            Texture::VertexColor | Texture::Scale { .. } | Texture::Mix { .. } => true,
         };
-        if !sound {
+        if !sound || texture.children().any(|child| child.index() >= i) {
             problems.add(
                 Subject::Texture(i),
                 "its values must be finite, and what it refers to must come before it",
             );
         }
+        let own = texture
+            .children()
+            .map(|child| lookups.get(child.index()).copied().unwrap_or(0))
+            .fold(1, u64::saturating_add);
+        // What refers to it has as many, and is not told again.
+        if own > MOST_LOOKUPS {
+            problems.add(
+                Subject::Texture(i),
+                format!("it asks {own} textures for one colour; at most {MOST_LOOKUPS} are possible"),
+            );
+        }
+        lookups.push(if own > MOST_LOOKUPS { 0 } else { own });
     }
 }
 
@@ -176,6 +195,7 @@ fn check_mesh(mesh: &Mesh, mut problem: impl FnMut(&'static str)) {
     for (length, name) in [
         (mesh.normals.len(), "the mesh must have a normal for each vertex or none"),
         (mesh.uvs.len(), "the mesh must have a texture coordinate for each vertex or none"),
+        (mesh.colors.len(), "the mesh must have a colour for each vertex or none"),
     ] {
         if length != 0 && length != n {
             problem(name);
@@ -183,6 +203,9 @@ fn check_mesh(mesh: &Mesh, mut problem: impl FnMut(&'static str)) {
     }
     if !mesh.normals.iter().all(|v| v.is_finite()) || !mesh.uvs.iter().all(|v| v.is_finite()) {
         problem("a vertex normal or texture coordinate is infinite or not a number");
+    }
+    if !mesh.colors.iter().all(|c| c.is_finite()) {
+        problem("a vertex colour is infinite or not a number");
     }
 }
 
@@ -296,7 +319,7 @@ fn check_groups(scene: &Scene, problems: &mut Problems) {
 
 pub(super) fn check_emission(
     scene: &Scene,
-    emission: crate::handle::Handle<Texture>,
+    emission: Handle<Texture>,
     subject: Subject,
     problems: &mut Problems,
 ) {
@@ -304,25 +327,44 @@ pub(super) fn check_emission(
         problems.add(subject, "the texture of its light does not exist");
         return;
     }
+    for texture in reached(scene, emission) {
+        check_emitted(scene, texture, subject, problems);
+    }
+}
+
+/// A texture and all that it refers to, each once. Only what comes before: a cycle is a problem of the texture's own.
+fn reached(scene: &Scene, texture: Handle<Texture>) -> Vec<Handle<Texture>> {
+    let mut found = vec![texture];
+    let mut next = 0;
+    while let Some(&one) = found.get(next) {
+        next += 1;
+        for child in scene.textures.list[one].children() {
+            if child.index() < one.index() && !found.contains(&child) {
+                found.push(child);
+            }
+        }
+    }
+    found
+}
+
+fn check_emitted(scene: &Scene, emission: Handle<Texture>, subject: Subject, problems: &mut Problems) {
     match &scene.textures.list[emission] {
         Texture::Constant(value) => check_light_value(*value, "radiance", subject, problems),
         Texture::Bitmap(bitmap) => {
             let images = &scene.textures.images;
-            if images.contains(bitmap.image)
-                && images[bitmap.image].pixels.iter().any(|p| p.min_channel() < 0.0)
-            {
+            if images.contains(bitmap.image) && is_negative(&images[bitmap.image]) {
                 problems.add(subject, "a pixel of its light's texture is negative: light cannot be");
             }
         }
-        Texture::Checkerboard(board) => {
-            for child in [board.color0, board.color1] {
-                // Only what comes before: a cycle is a problem of the texture's own.
-                if child.index() < emission.index() {
-                    check_emission(scene, child, subject, problems);
-                }
-            }
+        Texture::VertexColor => {
+            problems.add(subject, "the colours of vertices cannot be light: give the light a bitmap");
         }
+        Texture::Checkerboard(_) | Texture::Scale { .. } | Texture::Mix { .. } | Texture::Channel { .. } => {}
     }
+}
+
+fn is_negative(image: &Pixmap) -> bool {
+    image.pixels.iter().any(|p| p.min_channel() < 0.0)
 }
 
 pub(super) fn check_transform(transform: &Transform, subject: Subject, problems: &mut Problems) {
@@ -366,7 +408,7 @@ mod tests {
     use crate::math::{Affine2, DVec3, Vec2, Vec3};
     use crate::medium::{Boundary, Grid, GridValues, Medium, Phase};
     use crate::shape::Group;
-    use crate::texture::{Bitmap, BitmapFilter, Image, Textures, Wrap};
+    use crate::texture::{Bitmap, BitmapFilter, Textures, Wrap};
 
     fn empty() -> Scene {
         let projection = Projection::Perspective {
@@ -419,7 +461,7 @@ mod tests {
     #[test]
     fn a_light_with_a_negative_pixel_or_a_sheared_frame_is_refused() {
         let mut scene = empty();
-        let image = scene.textures.images.push(Image::filled(1, 1, Rgb::splat(-1.0)));
+        let image = scene.textures.images.push(Pixmap::filled(1, 1, Rgb::splat(-1.0)));
         let bitmap =
             Bitmap { image, filter: BitmapFilter::Nearest, wrap: Wrap::Repeat, to_uv: Affine2::IDENTITY };
         let texture = scene.textures.push(Texture::Bitmap(bitmap));

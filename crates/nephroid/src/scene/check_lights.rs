@@ -5,7 +5,7 @@ use super::{Scene, Subject};
 use crate::handle::Handle;
 use crate::light::{EnvironmentMapping, LightKind};
 use crate::math::Transform;
-use crate::texture::Image;
+use crate::texture::Pixmap;
 
 pub(super) fn check_lights(scene: &Scene, problems: &mut Problems) {
     for (i, light) in scene.lights.iter().enumerate() {
@@ -92,7 +92,7 @@ fn check_place(to_world: &Transform, subject: Subject, problems: &mut Problems) 
 
 fn check_image(
     scene: &Scene,
-    image: Handle<Image>,
+    image: Handle<Pixmap>,
     mapping: Option<EnvironmentMapping>,
     subject: Subject,
     problems: &mut Problems,
@@ -130,7 +130,7 @@ mod tests {
             Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic, medium: None };
         let film = FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box };
         let mut scene = Scene::new(camera, film);
-        let image = scene.textures.images.push(Image::filled(2, 1, Rgb::WHITE));
+        let image = scene.textures.images.push(Pixmap::filled(2, 1, Rgb::WHITE));
         let to_world = Transform::IDENTITY;
         let kinds = [
             LightKind::Environment { image, mapping: EnvironmentMapping::EqualArea, scale: 1.0, to_world },

@@ -1,3 +1,4 @@
+use crate::color::Rgb;
 use crate::math::{Vec2, Vec3};
 
 /// Triangles over shared vertices.
@@ -9,11 +10,22 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// A texture coordinate for each vertex, or empty: then `uv` is barycentric.
     pub uvs: Vec<Vec2>,
+    /// A colour for each vertex, or empty: then it is white. [`Texture::VertexColor`](crate::texture::Texture) shows it.
+    pub colors: Vec<Rgb>,
     /// Three vertices each, counter-clockwise as seen from the side the normal points to.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
+    /// The colour on a triangle where its second and third vertex have the weights `u` and `v`.
+    pub(crate) fn color(&self, triangle: u32, u: f32, v: f32) -> Rgb {
+        if self.colors.is_empty() {
+            return Rgb::WHITE;
+        }
+        let [a, b, c] = self.triangles[triangle as usize].map(|i| self.colors[i as usize]);
+        a * (1.0 - u - v) + b * u + c * v
+    }
+
     /// Replaces the vertex normals by means of the adjacent triangles' normals, weighted by the
     /// angle at the vertex (Thürmer and Wüthrich 1998). A vertex of no proper triangle gets +z.
     pub fn compute_normals(&mut self) {

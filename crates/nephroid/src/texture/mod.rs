@@ -1,72 +1,69 @@
-//! Textures: a colour for each point of a surface's parameter square.
+//! Textures: a colour for each point of a surface.
 
+mod bitmap;
 mod checkerboard;
 mod image;
+mod list;
+mod pixmap;
+mod point;
 
+pub use bitmap::{Bitmap, BitmapFilter, Wrap};
 pub use checkerboard::Checkerboard;
-pub use image::{Bitmap, BitmapFilter, Image, Wrap};
+pub use image::Image;
+pub use list::Textures;
+pub use pixmap::{Decoding, Pixels, Pixmap, Plane};
+pub use point::TexturePoint;
 
 use crate::color::Rgb;
-use crate::handle::{Arena, Handle};
-use crate::math::Vec2;
+use crate::handle::Handle;
 
-/// A colour that may vary over a surface.
+/// A colour that may vary over a surface, and its opacity, which only [`Texture::Channel`] reads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texture {
-    /// The same everywhere.
+    /// The same everywhere. Opaque.
     Constant(Rgb),
     /// An image.
     Bitmap(Bitmap),
     /// Two alternating textures.
     Checkerboard(Checkerboard),
+    /// The colour that a mesh has at its vertices; white on what has none. Opaque.
+    VertexColor,
+    /// The product of two textures, opacities too.
+    Scale {
+        /// One factor.
+        a: Handle<Self>,
+        /// The other.
+        b: Handle<Self>,
+    },
+    /// `a`·(1 − weight) + `b`·weight in each channel; opacities by the mean of the weight's channels.
+    Mix {
+        /// The share of `b`.
+        weight: Handle<Self>,
+        /// What is shown where the weight is 0.
+        a: Handle<Self>,
+        /// What is shown where the weight is 1.
+        b: Handle<Self>,
+    },
+    /// One channel of a texture, in all channels. Opaque.
+    Channel {
+        /// Which texture.
+        of: Handle<Self>,
+        /// Red, green, blue, opacity: 0 to 3.
+        channel: u8,
+    },
 }
 
-/// The textures of a scene and the images they show.
-///
-/// A texture refers only to textures stored before it, so looking one up always ends.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Textures {
-    /// Every texture.
-    pub list: Arena<Texture>,
-    /// Every image.
-    pub images: Arena<Image>,
-}
-
-impl Textures {
-    /// Stores a texture.
-    pub fn push(&mut self, texture: Texture) -> Handle<Texture> {
-        self.list.push(texture)
-    }
-
-    /// Stores a constant.
-    pub fn constant(&mut self, value: Rgb) -> Handle<Texture> {
-        self.list.push(Texture::Constant(value))
-    }
-
-    /// The value at `uv`.
-    pub fn eval(&self, texture: Handle<Texture>, uv: Vec2) -> Rgb {
-        match &self.list[texture] {
-            Texture::Constant(value) => *value,
-            Texture::Bitmap(bitmap) => bitmap.eval(&self.images[bitmap.image], uv),
-            Texture::Checkerboard(board) => self.eval(board.child(uv), uv),
-        }
-    }
-
-    /// The mean over the parameter square, exact for constants and whole images.
-    pub fn mean(&self, texture: Handle<Texture>) -> Rgb {
-        match &self.list[texture] {
-            Texture::Constant(value) => *value,
-            Texture::Bitmap(bitmap) => self.images[bitmap.image].mean(),
-            Texture::Checkerboard(board) => (self.mean(board.color0) + self.mean(board.color1)) * 0.5,
-        }
-    }
-
-    /// A bound on the values of all channels, which a constant and the pixels of an image reach.
-    pub fn brightest(&self, texture: Handle<Texture>) -> f32 {
-        match &self.list[texture] {
-            Texture::Constant(value) => value.max_channel(),
-            Texture::Bitmap(bitmap) => self.images[bitmap.image].brightest(),
-            Texture::Checkerboard(board) => self.brightest(board.color0).max(self.brightest(board.color1)),
-        }
+impl Texture {
+    /// The textures that it refers to.
+    pub fn children(&self) -> impl Iterator<Item = Handle<Self>> {
+        let children = match *self {
+            Self::Constant(_) | Self::Bitmap(_) | Self::VertexColor => [None; 3],
+            Self::Checkerboard(Checkerboard { color0: a, color1: b, .. }) | Self::Scale { a, b } => {
+                [Some(a), Some(b), None]
+            }
+            Self::Mix { weight, a, b } => [Some(weight), Some(a), Some(b)],
+            Self::Channel { of, .. } => [Some(of), None, None],
+        };
+        children.into_iter().flatten()
     }
 }

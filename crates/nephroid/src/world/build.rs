@@ -16,7 +16,7 @@ use crate::medium::{Matter, Media};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
 use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
-use crate::texture::Image;
+use crate::texture::Pixmap;
 
 impl World {
     /// Checks a scene and prepares it for rendering.
@@ -51,6 +51,7 @@ impl World {
                     flipped: s.flip_normals,
                     invisible,
                     masked: inside != s.material && !invisible,
+                    colored: matches!(s.geometry, Geometry::Mesh(mesh) if !scene.meshes[mesh].colors.is_empty()),
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
                     rank: 0,
@@ -236,6 +237,7 @@ fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
         positions: mesh.positions.iter().map(|&p| to_world.point(p)).collect(),
         normals: mesh.normals.iter().map(|&n| to_world.normal(n)).collect(),
         uvs: mesh.uvs.clone(),
+        colors: mesh.colors.clone(),
         triangles: mesh
             .triangles
             .iter()
@@ -317,7 +319,7 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
             (EmitterKind::Goniometric(Box::new(lamp)), power)
         }
         &LightKind::Projector { ref to_world, image, scale, unit, fov_deg, fov_axis } => {
-            let Image { width, height, .. } = scene.textures.images[image];
+            let Pixmap { width, height, .. } = scene.textures.images[image];
             let half = fov_axis.half_size(fov_deg, width as f32, height as f32);
             let lamp = Projector::new(&scene.textures, to_world, image, scale, unit, half)?;
             let power = lamp.power();

@@ -6,7 +6,7 @@
 //! ray and the candidate, not a sampler: closest hits, shadow rays and photons need no other code and no
 //! random numbers, and a ray traced twice finds the same.
 
-use super::{Hit, RayHit, Surfaced, World};
+use super::{Hit, RayHit, World};
 use crate::material::Material;
 use crate::math::Ray;
 use crate::sampling::{Key, Stream};
@@ -19,24 +19,24 @@ impl World {
         if !surface.masked {
             return true;
         }
-        let point = self.surface(ray, hit);
-        let material = surface.material;
-        let opacity = Material::opacity(&self.scene.materials, material, &self.scene.textures, point.uv);
+        let met = Hit::new(hit, self.surface(ray, hit));
         // A sphere or a cylinder is met from either side.
-        let side = u64::from(point.ng.dot(ray.direction) > 0.0);
+        let side = u64::from(met.point.ng.dot(ray.direction) > 0.0);
         let instance = hit.instance.map_or(0, |i| u64::from(i) + 1);
         let candidate = [u64::from(hit.shape) << 32 | u64::from(hit.primitive), instance << 1 | side];
-        chance(ray, candidate) < f64::from(opacity)
+        chance(ray, candidate) < f64::from(self.opacity_there(&met))
     }
 
     /// The opacity of the surface that a ray has met: 1 without a mask. Fewer photons land on a masked
     /// surface by as much, and each stands for as many more.
     pub(crate) fn opacity(&self, hit: &Hit) -> f32 {
-        let Surfaced { material, masked, .. } = self.surfaces[hit.shape as usize];
-        if !masked {
-            return 1.0;
-        }
-        Material::opacity(&self.scene.materials, material, &self.scene.textures, hit.point.uv)
+        if self.surfaces[hit.shape as usize].masked { self.opacity_there(hit) } else { 1.0 }
+    }
+
+    fn opacity_there(&self, hit: &Hit) -> f32 {
+        let material = self.surfaces[hit.shape as usize].material;
+        let at = self.texture_point(hit);
+        Material::opacity(&self.scene.materials, material, &self.scene.textures, at)
     }
 }
 

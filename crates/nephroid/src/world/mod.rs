@@ -12,6 +12,8 @@ mod nest;
 mod nest_tests;
 mod placed;
 mod scenery;
+#[cfg(test)]
+mod spot_tests;
 mod surroundings;
 mod targets;
 #[cfg(test)]
@@ -30,12 +32,12 @@ use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
 use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
-use crate::math::{Bounds, Frame, Ray, Vec3, offset_origin};
+use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, offset_origin};
 use crate::medium::{Boundary, Matter};
 use crate::sampling::Discrete;
 use crate::scene::{Remark, Scene, Subject};
 use crate::shape::SurfacePoint;
-use crate::texture::Texture;
+use crate::texture::{Texture, TexturePoint};
 
 /// A scene made ready to be rendered. See [`World::new`].
 #[derive(Clone, Debug)]
@@ -80,6 +82,8 @@ struct Surfaced {
     invisible: bool,
     /// Whether light passes it by chance.
     masked: bool,
+    /// Whether it has colours at its vertices.
+    colored: bool,
     /// The radiance and number of the light that it is.
     light: Option<(Handle<Texture>, u32)>,
     /// What it lies between, if it names any medium.
@@ -114,6 +118,25 @@ pub struct Hit {
     pub point: SurfacePoint,
     /// Index of the shape: first come those of the scene, then those of its groups.
     pub shape: u32,
+    /// Where on the shape: what few ask is told from it when they do.
+    spot: Spot,
+}
+
+/// A place on a shape.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    u: f32,
+    v: f32,
+    primitive: u32,
+    #[expect(dead_code, reason = "tangents ask for it")]
+    instance: Option<u32>,
+}
+
+impl Hit {
+    fn new(hit: &RayHit, point: SurfacePoint) -> Self {
+        let &RayHit { t, u, v, shape, primitive, instance } = hit;
+        Self { t, point, shape, spot: Spot { u, v, primitive, instance } }
+    }
 }
 
 impl World {
@@ -200,7 +223,7 @@ impl World {
     /// The first surface a ray meets, null ones included.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let hit = self.nearest(ray)?;
-        Some(Hit { t: hit.t, point: self.surface(ray, &hit), shape: hit.shape })
+        Some(Hit::new(&hit, self.surface(ray, &hit)))
     }
 
     /// Where a ray first meets a surface, null ones included: the search alone. The surface there is for
@@ -241,8 +264,20 @@ impl World {
     /// How the surface scatters, seen from the side of `wo` and not from inside of any shape with a priority.
     pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
         let material = self.surfaces[hit.shape as usize].material;
-        let surface = Surface { ng: hit.point.ng, frame: Frame::from_normal(hit.point.ns), uv: hit.point.uv };
+        let (frame, at) = (Frame::from_normal(hit.point.ns), self.texture_point(hit));
+        let surface = Surface { ng: hit.point.ng, frame, at };
         Material::at(&self.scene.materials, material, &self.scene.textures, &surface, wo)
+    }
+
+    /// Where textures are read at a hit.
+    fn texture_point(&self, hit: &Hit) -> TexturePoint {
+        let Hit { point, shape, spot, .. } = hit;
+        if self.surfaces[*shape as usize].colored {
+            let color = self.scenery.color(*shape, spot.primitive, Vec2::new(spot.u, spot.v));
+            TexturePoint { uv: point.uv, color }
+        } else {
+            point.uv.into()
+        }
     }
 
     /// Radiance the surface itself emits towards `wo`, in W/(m²·sr), and the light it belongs to.

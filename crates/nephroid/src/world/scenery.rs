@@ -2,6 +2,7 @@ use super::RayHit;
 use super::level::{Candidate, Item, Level, Other, Searcher};
 use super::placed::Placed;
 use crate::bvh::{Lanes, Simd, Work};
+use crate::color::Rgb;
 use crate::math::{Bounds, Ray, Vec2};
 use crate::scene::Scene;
 use crate::shape::{Intersection, Mesh, Primitive, SurfacePoint, Triangle};
@@ -60,6 +61,12 @@ impl Scenery {
             }
             None => self.primitives[hit.primitive as usize].surface(ray, &at, &self.meshes),
         }
+    }
+
+    /// The colour that a mesh has at a place on one of its triangles; white where it has none.
+    pub fn color(&self, shape: u32, triangle: u32, at: Vec2) -> Rgb {
+        self.mesh_of[shape as usize]
+            .map_or(Rgb::WHITE, |mesh| self.meshes[mesh as usize].color(triangle, at.x, at.y))
     }
 
     /// Some point of a shape, in the space of the scene or of its group, without regard to flipped normals.

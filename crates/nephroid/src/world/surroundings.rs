@@ -176,7 +176,7 @@ impl World {
             }
             let Some(hit) = hit else { return through };
             let (point, direction) = (self.surface(&ray, &hit), ray.direction);
-            inside = self.cross(inside, &met(hit, point), direction, direction);
+            inside = self.cross(inside, &Hit::new(&hit, point), direction, direction);
             ray = leave(&point, direction);
             if let Some(end) = end {
                 let left = end - ray.origin;
@@ -193,7 +193,7 @@ impl World {
     #[inline]
     fn stops(&self, ray: &Ray, hit: RayHit, inside: &Surroundings) -> bool {
         let Surfaced { invisible, rank, .. } = self.surfaces[hit.shape as usize];
-        let hidden = || self.is_hidden(&met(hit, self.surface(ray, &hit)), ray.direction, inside);
+        let hidden = || self.is_hidden(&Hit::new(&hit, self.surface(ray, &hit)), ray.direction, inside);
         !invisible && (rank == 0 || !hidden())
     }
 }
@@ -202,10 +202,6 @@ impl World {
 fn unit(ray: Ray) -> Ray {
     let length = ray.direction.length();
     Ray { direction: ray.direction / length, t_max: ray.t_max * length, ..ray }
-}
-
-fn met(hit: RayHit, point: SurfacePoint) -> Hit {
-    Hit { t: hit.t, point, shape: hit.shape }
 }
 
 /// The medium on the side of a surface to which a direction with this cosine to its normal leads.

@@ -86,7 +86,7 @@ fn scene(uneven: bool, plane: bool) -> World {
         light(&mut scene, LightKind::Spot { to_world, intensity, cutoff_deg, beam_width_deg, texture });
         let mut image = Image::filled(8, 4, Rgb::splat(0.1));
         image.pixels[2] = Rgb::new(3.0, 2.0, 1.0);
-        let image = scene.textures.images.push(image);
+        let image = scene.textures.images.push(image.into());
         let upright = Transform::rotate(DVec3::X, 90.0);
         light(
             &mut scene,
