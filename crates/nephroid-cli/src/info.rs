@@ -137,6 +137,17 @@ pub fn material(material: &Material) -> &'static str {
         Material::ThinDielectric { .. } => "thindielectric",
         Material::TwoSided { .. } => "twosided",
         Material::Mask { .. } => "mask",
+        Material::RoughConductor { .. } => "roughconductor",
+        Material::RoughDielectric { .. } => "roughdielectric",
+        Material::Plastic { roughness: None, .. } => "plastic",
+        Material::Plastic { .. } => "roughplastic",
+        Material::CoatedConductor { .. } => "coatedconductor",
+        Material::DiffuseTransmission { .. } => "diffusetransmission",
+        Material::Principled(_) => "principled",
+        Material::MetallicRoughness(_) => "metallicroughness",
+        Material::Blend { .. } => "blend",
+        Material::NormalMap { .. } => "normalmap",
+        Material::BumpMap { .. } => "bumpmap",
         Material::Null => "null",
     }
 }

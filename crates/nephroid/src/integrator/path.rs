@@ -155,7 +155,7 @@ fn radiance<P: Probe>(
             break;
         }
         throughput = carried / q;
-        last = if scattered.dirac {
+        last = if scattered.is_dirac() {
             Last::Certain
         } else {
             Last::Sampled { from: hit.point.position, pdf_solid_angle: scattered.pdf_solid_angle }

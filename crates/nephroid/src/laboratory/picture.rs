@@ -6,7 +6,6 @@ use super::photons::MapPhoton;
 use crate::color::Rgb;
 use crate::film::Crop;
 use crate::integrator::MapName;
-use crate::material::Material;
 use crate::math::real::ln;
 use crate::math::{Ray, Vec2, Vec3};
 use crate::texture::Image;
@@ -136,10 +135,8 @@ fn is_hidden(world: &World, camera: Vec3, photon: Vec3, seen_up_to: f32) -> bool
 
 /// Whether photons show through a surface.
 fn is_clear(world: &World, hit: &Hit) -> bool {
-    matches!(
-        world.material_of(hit.shape),
-        Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null
-    )
+    let scene = world.scene();
+    world.material_of(hit.shape).is_clear(&scene.materials, &scene.textures)
 }
 
 /// Fills the pixels whose centres a dot covers, and at least the one that it lies in.

@@ -1,6 +1,7 @@
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::fresnel::mirror;
+use super::kind::LobeKind;
 use super::lambertian::Lambertian;
 use super::phong::Phong;
 use super::split::Split;
@@ -33,10 +34,18 @@ pub struct BsdfSample {
     pub radiance_scale: f32,
     /// The density of `wi` per solid angle; 0 for a Dirac lobe, which has none.
     pub pdf_solid_angle: f32,
-    /// Whether the lobe is a Dirac.
-    pub dirac: bool,
+    /// The class of the lobe that was drawn.
+    pub lobe: LobeKind,
     /// Whether `wi` lies on the other side of the geometry than `wo`.
     pub transmitted: bool,
+}
+
+impl BsdfSample {
+    /// Whether the lobe is a Dirac.
+    #[inline]
+    pub fn is_dirac(&self) -> bool {
+        self.lobe == LobeKind::Dirac
+    }
 }
 
 /// Segments that a path has more behind a surface: none where it goes straight on, as through thin glass. Mitsuba's
@@ -111,6 +120,27 @@ impl Bsdf {
     #[inline]
     pub fn is_black(&self) -> bool {
         matches!(self.lobes, Lobes::Black)
+    }
+
+    /// Whether there are lobes of a class.
+    #[inline]
+    pub fn has(&self, kind: LobeKind) -> bool {
+        match kind {
+            LobeKind::Dirac => self.is_dirac(),
+            LobeKind::Sharp => false,
+            LobeKind::Broad => !self.is_dirac() && !self.is_black(),
+        }
+    }
+
+    /// The lobes of one class alone. The three parts add up to the whole.
+    pub fn part(&self, kind: LobeKind) -> Self {
+        if self.has(kind) { *self } else { Self { lobes: Lobes::Black, ..*self } }
+    }
+
+    /// Whether [`eval`](Self::eval) may be above zero for directions on opposite sides.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        false
     }
 
     /// Whether there is a Phong lobe of a weight above zero.
@@ -196,8 +226,8 @@ impl Bsdf {
         if pdf_solid_angle > 0.0 {
             let weight = self.eval(wo, wi) * (self.cosine(wi) / pdf_solid_angle);
             let weight = weight * self.carried(wo, wi, transport);
-            let (dirac, transmitted) = (false, false);
-            Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, dirac, transmitted })
+            let (lobe, transmitted) = (LobeKind::Broad, false);
+            Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, lobe, transmitted })
         } else {
             None
         }
@@ -218,8 +248,8 @@ impl Bsdf {
             return None;
         }
         let weight = lambertian.albedo * self.carried(wo, wi, transport);
-        let (dirac, transmitted) = (false, false);
-        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, dirac, transmitted })
+        let (lobe, transmitted) = (LobeKind::Broad, false);
+        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, lobe, transmitted })
     }
 
     /// The Dirac lobes, reflection first and then transmission, each with its full weight: following
@@ -305,8 +335,8 @@ impl Bsdf {
             return None;
         }
         let weight = split.reflectance * self.carried(wo, wi, transport);
-        let (dirac, transmitted) = (true, false);
-        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle: 0.0, dirac, transmitted })
+        let (lobe, transmitted) = (LobeKind::Dirac, false);
+        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle: 0.0, lobe, transmitted })
     }
 
     fn transmission(&self, wo: Vec3, split: &Split, transport: Transport) -> Option<BsdfSample> {
@@ -322,8 +352,8 @@ impl Bsdf {
             Transport::Flux => 1.0,
         };
         let weight = refraction.transmittance * (radiance_scale * self.carried(wo, wi, transport));
-        let (dirac, transmitted) = (true, true);
-        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: 0.0, dirac, transmitted })
+        let (lobe, transmitted) = (LobeKind::Dirac, true);
+        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: 0.0, lobe, transmitted })
     }
 
     /// A normal of the surface, turned to the side of `wo`.

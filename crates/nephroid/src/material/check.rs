@@ -1,4 +1,4 @@
-use super::{Material, Metal};
+use super::{Material, Metal, MetallicRoughness, Roughness};
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
 use crate::texture::{Texture, Textures};
@@ -24,6 +24,64 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
             problems.indices(*int_ior, *ext_ior);
             problems.albedo("specular_reflectance", *specular_reflectance);
             problems.albedo("specular_transmittance", *specular_transmittance);
+        }
+        Material::RoughConductor { metal, specular_reflectance, roughness } => {
+            problems.metal(metal);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+            problems.roughness("roughness", roughness);
+        }
+        Material::RoughDielectric {
+            int_ior,
+            ext_ior,
+            specular_reflectance,
+            specular_transmittance,
+            roughness,
+        } => {
+            problems.indices(*int_ior, *ext_ior);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+            problems.albedo("specular_transmittance", *specular_transmittance);
+            problems.roughness("roughness", roughness);
+        }
+        Material::Plastic {
+            int_ior, ext_ior, diffuse_reflectance, specular_reflectance, roughness, ..
+        } => {
+            problems.indices(*int_ior, *ext_ior);
+            problems.at_least_one("int_ior / ext_ior", *int_ior / *ext_ior);
+            problems.albedo("diffuse_reflectance", *diffuse_reflectance);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+            problems.optional_roughness("roughness", roughness.as_ref());
+        }
+        Material::CoatedConductor { metal, specular_reflectance, roughness, coat_ior, coat_roughness } => {
+            problems.metal(metal);
+            problems.albedo("specular_reflectance", *specular_reflectance);
+            problems.optional_roughness("roughness", roughness.as_ref());
+            problems.at_least_one("coat_ior", *coat_ior);
+            problems.optional_roughness("coat_roughness", coat_roughness.as_ref());
+        }
+        Material::DiffuseTransmission { reflectance, transmittance } => {
+            problems.albedo("reflectance", *reflectance);
+            problems.albedo("transmittance", *transmittance);
+        }
+        Material::Principled(principled) => {
+            problems.albedo("base_color", principled.base_color);
+            principled.scalars().into_iter().for_each(|(name, texture)| problems.share(name, texture));
+            problems.at_least_one("eta", principled.eta);
+        }
+        Material::MetallicRoughness(gltf) => problems.metallic_roughness(gltf),
+        Material::Blend { weight, first, second } => {
+            problems.share("weight", *weight);
+            problems.part("first", materials, material, *first);
+            if first != second {
+                problems.part("second", materials, material, *second);
+            }
+        }
+        Material::NormalMap { normals: texture, scale, inside }
+        | Material::BumpMap { heights: texture, scale, inside } => {
+            problems.exists("the map", *texture);
+            if !scale.is_finite() {
+                problems.add(format!("scale is {scale}, but must be finite"));
+            }
+            problems.stored_before("inside", materials, material, *inside);
         }
         Material::TwoSided { front, back } => {
             problems.side("front", materials, material, *front);
@@ -52,8 +110,7 @@ impl Problems<'_> {
 
     /// The value of an albedo that is constant and in order.
     fn albedo(&mut self, name: &str, texture: Handle<Texture>) -> Option<Rgb> {
-        if !self.textures.list.contains(texture) {
-            self.add(format!("{name} refers to a texture that does not exist"));
+        if !self.exists(name, texture) {
             return None;
         }
         let Texture::Constant(value) = self.textures.list[texture] else { return None };
@@ -72,10 +129,66 @@ impl Problems<'_> {
         Some(value)
     }
 
+    fn exists(&mut self, name: &str, texture: Handle<Texture>) -> bool {
+        let exists = self.textures.list.contains(texture);
+        if !exists {
+            self.add(format!("{name} refers to a texture that does not exist"));
+        }
+        exists
+    }
+
+    /// A number in [0, 1], or three of them.
+    fn share(&mut self, name: &str, texture: Handle<Texture>) {
+        if self.exists(name, texture)
+            && let Texture::Constant(value) = self.textures.list[texture]
+            && !(value.min_channel() >= 0.0 && value.max_channel() <= 1.0)
+        {
+            self.add(format!("{name} is {}, but must be between 0 and 1", show(value)));
+        }
+    }
+
+    fn roughness(&mut self, name: &str, roughness: &Roughness) {
+        self.share(&format!("{name} along the first tangent"), roughness.alpha_u);
+        if roughness.alpha_v != roughness.alpha_u {
+            self.share(&format!("{name} along the second tangent"), roughness.alpha_v);
+        }
+    }
+
+    fn optional_roughness(&mut self, name: &str, roughness: Option<&Roughness>) {
+        if let Some(roughness) = roughness {
+            self.roughness(name, roughness);
+        }
+    }
+
+    fn at_least_one(&mut self, name: &str, ior: f32) {
+        if !(1.0..=1e3).contains(&ior) {
+            self.add(format!("{name} is {ior}, but must be between 1 and 1000"));
+        }
+    }
+
+    fn metallic_roughness(&mut self, gltf: &MetallicRoughness) {
+        self.albedo("base_color", gltf.base_color);
+        gltf.bounded().into_iter().for_each(|(name, texture)| self.share(name, texture));
+        if self.exists("specular_color", gltf.specular_color)
+            && let Texture::Constant(value) = self.textures.list[gltf.specular_color]
+            && !(value.is_finite() && value.min_channel() >= 0.0)
+        {
+            self.add(format!("specular_color is {}, but must be finite and not negative", show(value)));
+        }
+        if gltf.ior != 0.0 {
+            self.at_least_one("ior", gltf.ior);
+        }
+        if !gltf.anisotropy_rotation.is_finite() {
+            self.add("anisotropy_rotation must be finite");
+        }
+        if let Some(direction) = gltf.anisotropy_direction {
+            self.exists("anisotropy_direction", direction);
+        }
+    }
+
     fn opacity(&mut self, texture: Handle<Texture>) {
-        if !self.textures.list.contains(texture) {
-            self.add("opacity refers to a texture that does not exist");
-        } else if let Texture::Constant(value) = self.textures.list[texture]
+        if self.exists("opacity", texture)
+            && let Texture::Constant(value) = self.textures.list[texture]
             && !(value.min_channel() >= 0.0 && value.max_channel() <= 1.0)
         {
             self.add(format!(
@@ -152,6 +265,20 @@ impl Problems<'_> {
         false
     }
 
+    fn part(
+        &mut self,
+        name: &str,
+        materials: &Arena<Material>,
+        owner: Handle<Material>,
+        part: Handle<Material>,
+    ) {
+        if self.stored_before(name, materials, owner, part)
+            && let Material::Mask { .. } = materials[part]
+        {
+            self.add(format!("{name} is a mask; put the blend into the mask"));
+        }
+    }
+
     fn side(
         &mut self,
         name: &str,
@@ -166,7 +293,7 @@ impl Problems<'_> {
             self.add(format!(
                 "{name} is a mask, which cuts out both sides; put the two-sided material into the mask"
             ));
-        } else if let Some(kind) = two_sided_already(&materials[side]) {
+        } else if let Some(kind) = two_sided_already(materials, self.textures, side) {
             self.add(format!(
                 "{name} is {kind}, which has two sides already; use it without the two-sided material"
             ));
@@ -175,16 +302,18 @@ impl Problems<'_> {
 }
 
 /// The name of a material that light passes through.
-fn two_sided_already(material: &Material) -> Option<&'static str> {
-    match material {
+fn two_sided_already(
+    materials: &Arena<Material>,
+    textures: &Textures,
+    material: Handle<Material>,
+) -> Option<&'static str> {
+    match &materials[material] {
         Material::Dielectric { .. } => Some("a dielectric"),
         Material::ThinDielectric { .. } => Some("a thin dielectric"),
         Material::Null => Some("a null material"),
-        Material::Diffuse { .. }
-        | Material::Phong { .. }
-        | Material::Conductor { .. }
-        | Material::TwoSided { .. }
-        | Material::Mask { .. } => None,
+        Material::RoughDielectric { .. } => Some("a rough dielectric"),
+        Material::DiffuseTransmission { .. } => Some("a diffuse transmitter"),
+        other => other.is_clear(materials, textures).then_some("a material that light goes through"),
     }
 }
 

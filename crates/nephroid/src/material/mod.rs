@@ -3,14 +3,20 @@
 //! A [`Material`] is what the scene says; [`Material::at`] reads its textures at a hit and gives a
 //! [`Bsdf`], a small value of plain numbers that estimators evaluate as often as they like.
 
+mod at;
 mod bsdf;
 mod check;
 mod conductor;
 mod dielectric;
 mod fresnel;
+mod kind;
 mod lambertian;
 mod mask;
+mod metallic_roughness;
+mod nature;
 mod phong;
+mod principled;
+mod roughness;
 mod split;
 mod surface;
 
@@ -18,17 +24,15 @@ pub(crate) use bsdf::segments_by;
 pub use bsdf::{Bsdf, BsdfSample, Transport};
 pub use check::check;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric};
+pub use kind::LobeKind;
+pub use metallic_roughness::MetallicRoughness;
+pub use principled::Principled;
+pub use roughness::{Distribution, Roughness};
 pub use surface::Surface;
 
-use self::bsdf::Lobes;
-use self::conductor::Conductor;
-use self::dielectric::Dielectric;
-use self::lambertian::Lambertian;
-use self::phong::Phong;
 use crate::color::Rgb;
-use crate::handle::{Arena, Handle};
-use crate::math::Vec3;
-use crate::texture::{Texture, Textures};
+use crate::handle::Handle;
+use crate::texture::Texture;
 
 /// How a surface scatters light, as a scene describes it.
 ///
@@ -96,6 +100,94 @@ pub enum Material {
         /// How the surface scatters where it is there.
         inside: Handle<Material>,
     },
+    /// A metal with a rough surface. One-sided.
+    RoughConductor {
+        /// The metal.
+        metal: Metal,
+        /// Multiplies what Fresnel's equations give.
+        specular_reflectance: Handle<Texture>,
+        /// How rough it is.
+        roughness: Roughness,
+    },
+    /// A rough boundary of two transparent media, such as frosted glass (Walter et al. 2007).
+    RoughDielectric {
+        /// Index of refraction on the side the normal points away from.
+        int_ior: f32,
+        /// Index of refraction on the side the normal points to.
+        ext_ior: f32,
+        /// Multiplies what is reflected.
+        specular_reflectance: Handle<Texture>,
+        /// Multiplies what is transmitted.
+        specular_transmittance: Handle<Texture>,
+        /// How rough it is.
+        roughness: Roughness,
+    },
+    /// A diffuse base under a dielectric coat, with all that is reflected between them. One-sided.
+    Plastic {
+        /// Index of refraction of the coat.
+        int_ior: f32,
+        /// Index of refraction outside.
+        ext_ior: f32,
+        /// Albedo of the base.
+        diffuse_reflectance: Handle<Texture>,
+        /// Multiplies what the coat reflects outside.
+        specular_reflectance: Handle<Texture>,
+        /// Whether light that is reflected several times below the coat takes on the base's colour each time.
+        nonlinear: bool,
+        /// How rough the coat is; smooth if `None`.
+        roughness: Option<Roughness>,
+    },
+    /// A metal under a dielectric coat that absorbs nothing. One-sided.
+    CoatedConductor {
+        /// The metal, relative to what is outside of the coat.
+        metal: Metal,
+        /// Multiplies what Fresnel's equations give for the metal.
+        specular_reflectance: Handle<Texture>,
+        /// How rough the metal is; smooth if `None`.
+        roughness: Option<Roughness>,
+        /// Index of refraction of the coat relative to what is outside.
+        coat_ior: f32,
+        /// How rough the coat is; smooth if `None`.
+        coat_roughness: Option<Roughness>,
+    },
+    /// Lambert on both sides, and light goes through and is spread there as well: paper, leaves.
+    DiffuseTransmission {
+        /// Albedo for what stays on its side.
+        reflectance: Handle<Texture>,
+        /// The share that goes through.
+        transmittance: Handle<Texture>,
+    },
+    /// Disney's material. One-sided but for what light goes through.
+    Principled(Box<Principled>),
+    /// The material of glTF 2.0. One-sided but for what light goes through.
+    MetallicRoughness(Box<MetallicRoughness>),
+    /// A mixture of two materials.
+    Blend {
+        /// The part of the second, in [0, 1]: the mean of the channels.
+        weight: Handle<Texture>,
+        /// The first.
+        first: Handle<Material>,
+        /// The second.
+        second: Handle<Material>,
+    },
+    /// A material whose normal an image tilts.
+    NormalMap {
+        /// The normal in the shading frame: colours in [0, 1] stand for coordinates in [−1, 1]. Raw, not sRGB.
+        normals: Handle<Texture>,
+        /// Multiplies the first two coordinates.
+        scale: f32,
+        /// The material.
+        inside: Handle<Material>,
+    },
+    /// A material whose normal is that of the surface raised by heights.
+    BumpMap {
+        /// Heights, in units of length.
+        heights: Handle<Texture>,
+        /// Multiplies them.
+        scale: f32,
+        /// The material.
+        inside: Handle<Material>,
+    },
     /// Nothing: light passes as if the surface were not there.
     Null,
 }
@@ -112,88 +204,4 @@ pub enum Metal {
         /// Imaginary part, relative to the outside.
         k: Rgb,
     },
-}
-
-impl Material {
-    /// How the material scatters at a point, seen from the side of `wo`: textures are read here and
-    /// nowhere else. Values of textures are brought into [0, 1], and Phong's two weights scaled down
-    /// where they add up to more than one, so that no image makes a surface reflect more than arrives.
-    ///
-    /// One-sided materials are black from behind. Two-sided ones turn the surface over, so that `wo` is
-    /// always in front of them.
-    ///
-    /// # Panics
-    ///
-    /// If a handle is not of these arenas. A two-sided material that contains itself never returns.
-    /// [`check()`] finds both.
-    pub fn at(
-        materials: &Arena<Self>,
-        material: Handle<Self>,
-        textures: &Textures,
-        surface: &Surface,
-        wo: Vec3,
-    ) -> Bsdf {
-        let mut surface = *surface;
-        let mut side = Self::unmasked(materials, material);
-        while let Self::TwoSided { front, back } = materials[side] {
-            if wo.dot(surface.ng) < 0.0 {
-                surface = surface.flipped();
-                side = back;
-            } else {
-                side = front;
-            }
-        }
-        let lobes = materials[side].lobes(textures, &surface, wo.dot(surface.ng) > 0.0);
-        Bsdf::new(surface.ng, surface.frame, lobes)
-    }
-
-    /// The lobes seen from the side the normal points to, or from the other one.
-    fn lobes(&self, textures: &Textures, surface: &Surface, in_front: bool) -> Lobes {
-        let read = |texture: Handle<Texture>| {
-            textures.eval(texture, surface.at).map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 })
-        };
-        match *self {
-            Self::Null => Lobes::Null,
-            Self::Dielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance }
-            | Self::ThinDielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance } => {
-                let dielectric = Dielectric {
-                    eta: int_ior / ext_ior,
-                    reflectance: read(specular_reflectance),
-                    transmittance: read(specular_transmittance),
-                };
-                if (dielectric.reflectance + dielectric.transmittance).is_black() {
-                    Lobes::Black
-                } else if matches!(self, Self::Dielectric { .. }) {
-                    Lobes::Dielectric(dielectric)
-                } else {
-                    Lobes::ThinDielectric(dielectric)
-                }
-            }
-            Self::Diffuse { reflectance } if in_front => {
-                let albedo = read(reflectance);
-                if albedo.is_black() { Lobes::Black } else { Lobes::Diffuse(Lambertian { albedo }) }
-            }
-            Self::Phong { diffuse_reflectance, specular_reflectance, exponent } if in_front => {
-                let (diffuse, specular) = (read(diffuse_reflectance), read(specular_reflectance));
-                if (diffuse + specular).is_black() {
-                    return Lobes::Black;
-                }
-                let scale = (diffuse + specular).map(|sum| 1.0 / sum.max(1.0));
-                Lobes::Phong(Phong { diffuse: diffuse * scale, specular: specular * scale, exponent })
-            }
-            Self::Conductor { metal, specular_reflectance } if in_front => {
-                let reflectance = read(specular_reflectance);
-                if reflectance.is_black() {
-                    Lobes::Black
-                } else {
-                    Lobes::Conductor(Conductor { metal, reflectance })
-                }
-            }
-            Self::Diffuse { .. }
-            | Self::Phong { .. }
-            | Self::Conductor { .. }
-            | Self::TwoSided { .. }
-            | Self::Mask { .. } => Lobes::Black,
-        }
-    }
 }

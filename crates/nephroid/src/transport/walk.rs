@@ -261,12 +261,13 @@ fn step(
         return Next::Stop;
     }
     let vertex = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walker.inside };
-    let BsdfSample { wi, pdf_solid_angle, dirac, .. } = sample;
+    let BsdfSample { wi, pdf_solid_angle, .. } = sample;
+    let dirac = sample.is_dirac();
     visit(Event::Bounce(&vertex, Bounce { wi, pdf_solid_angle, dirac }), walker.history.kind());
     if segments_by(wo, sample.wi) == 0 {
         walker.history.pass();
     } else {
-        walker.history.bounce(sample.dirac);
+        walker.history.bounce(dirac);
     }
     walker.inside = world.cross(walker.inside, &hit, -wo, sample.wi);
     walker.ray = leave(&hit.point, sample.wi);

@@ -29,7 +29,7 @@ use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
-use crate::handle::{Arena, Handle};
+use crate::handle::Handle;
 use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
 use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, offset_origin};
@@ -297,14 +297,4 @@ impl World {
 #[inline]
 pub(crate) fn leave(point: &SurfacePoint, direction: Vec3) -> Ray {
     Ray::new(offset_origin(point.position, point.error, point.ng, direction), direction)
-}
-
-/// Whether either side of a material is a smooth conductor or dielectric.
-fn is_dirac(materials: &Arena<Material>, material: Handle<Material>) -> bool {
-    match materials[material] {
-        Material::Conductor { .. } | Material::Dielectric { .. } | Material::ThinDielectric { .. } => true,
-        Material::TwoSided { front, back } => is_dirac(materials, front) || is_dirac(materials, back),
-        Material::Mask { inside, .. } => is_dirac(materials, inside),
-        Material::Diffuse { .. } | Material::Phong { .. } | Material::Null => false,
-    }
 }

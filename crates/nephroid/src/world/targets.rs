@@ -7,7 +7,6 @@ use crate::sampling::{Discrete, Key, Sampler, Sequence, Stream};
 use crate::scene::Scene;
 use crate::shape::{Primitive, Shape, ShearedRay};
 
-use super::is_dirac;
 use super::scenery::Scenery;
 
 /// How often what is to be aimed at is halved: balls for half of [`MAX_BALLS`], the rest being lamps.
@@ -151,7 +150,7 @@ fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) ->
             return None;
         }
         let lamp = emitter_of_shape.get(shape).copied().flatten();
-        let specular = is_dirac(&scene.materials, material);
+        let specular = Material::has_dirac(&scene.materials, material);
         let (items, planes) = items(scenery, shape, specular);
         Some(Solid { lamp, specular, items, planes })
     };

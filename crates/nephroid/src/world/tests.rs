@@ -4,6 +4,7 @@ use super::*;
 use crate::bvh::Simd;
 use crate::camera::{Camera, Projection};
 use crate::film::{FilmSettings, Filter};
+use crate::handle::Arena;
 use crate::math::{DVec3, Transform, Vec2, warp};
 use crate::medium::Media;
 use crate::sampling::{Key, Sampler, Sequence, Stream};

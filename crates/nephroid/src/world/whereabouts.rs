@@ -199,10 +199,7 @@ impl World {
 
     /// Whether light may go through a surface.
     pub(super) fn may_pass(&self, hit: &Hit) -> bool {
-        matches!(
-            self.material_of(hit.shape),
-            Material::Null | Material::Dielectric { .. } | Material::ThinDielectric { .. }
-        )
+        self.material_of(hit.shape).is_clear(&self.scene.materials, &self.scene.textures)
     }
 
     fn camera_probes(&self) -> impl Iterator<Item = Ray> + '_ {
@@ -237,7 +234,10 @@ impl World {
         let surfaced = &self.surfaces[shape];
         if surfaced.boundary.is_some()
             || surfaced.rank != 0
-            || !matches!(self.material_of(shape as u32), Material::Dielectric { .. })
+            || !matches!(
+                self.material_of(shape as u32),
+                Material::Dielectric { .. } | Material::RoughDielectric { .. }
+            )
         {
             return None;
         }

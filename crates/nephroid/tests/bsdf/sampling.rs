@@ -37,7 +37,7 @@ fn samples_follow_their_density() {
             || bsdf.is_dirac()
             || wo.dot(place.surface.frame.n) * wo.dot(place.surface.ng) < 0.0
         {
-            assert!(drawn.is_none_or(|sample| sample.dirac), "{name}");
+            assert!(drawn.is_none_or(|sample| sample.is_dirac()), "{name}");
             return;
         }
         let axis = Frame::from_normal(place.surface.ng);
@@ -59,7 +59,7 @@ fn a_weight_is_f_cos_over_pdf() {
             let (u, u_lobe) = (rng.square(), rng.next());
             for transport in [Transport::Radiance, Transport::Flux] {
                 let Some(sample) = bsdf.sample(wo, u, u_lobe, transport) else { continue };
-                if sample.dirac {
+                if sample.is_dirac() {
                     assert_eq!(sample.pdf_solid_angle, 0.0);
                     continue;
                 }
@@ -95,7 +95,7 @@ fn sampling_dirac_lobes_is_following_all_on_average() {
                 let Some(lobe) = lobes[usize::from(sample.transmitted)] else {
                     panic!("{} draws a lobe it does not have", case.name)
                 };
-                assert!(sample.dirac && lobe.dirac && sample.transmitted == lobe.transmitted);
+                assert!(sample.is_dirac() && lobe.is_dirac() && sample.transmitted == lobe.transmitted);
                 assert_eq!(sample.wi, lobe.wi);
                 sums[usize::from(sample.transmitted)] += sample.weight.g / DRAWS as f32;
             }

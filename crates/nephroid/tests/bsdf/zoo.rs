@@ -195,6 +195,7 @@ fn the_zoo_has_every_material() {
         Material::TwoSided { .. } => 5,
         Material::Null => 6,
         Material::Mask { .. } => 7,
+        _ => 8,
     };
     for wanted in 0..=7 {
         assert!(zoo.cases.iter().any(|case| kind(&zoo.materials[case.material]) == wanted), "{wanted}");

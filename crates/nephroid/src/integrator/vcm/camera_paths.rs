@@ -241,7 +241,7 @@ impl Camera<'_> {
             return false;
         }
         walk.throughput = carried / q;
-        if next.dirac {
+        if next.is_dirac() {
             walk.specular = true;
             walk.trail.turn(1.0, 1.0);
         } else {

@@ -1,0 +1,61 @@
+//! What can be told of a material without looking at a surface.
+
+use super::Material;
+use crate::color::Rgb;
+use crate::handle::{Arena, Handle};
+use crate::texture::{Texture, Textures};
+
+impl Material {
+    /// Whether either side of a material has a mirror direction or refraction as its own, null ones aside.
+    pub(crate) fn has_dirac(materials: &Arena<Self>, material: Handle<Self>) -> bool {
+        match &materials[material] {
+            Self::Conductor { .. } | Self::Dielectric { .. } | Self::ThinDielectric { .. } => true,
+            Self::Plastic { roughness, .. } => roughness.is_none(),
+            Self::CoatedConductor { roughness, coat_roughness, .. } => {
+                roughness.is_none() || coat_roughness.is_none()
+            }
+            Self::TwoSided { front: first, back: second } | Self::Blend { first, second, .. } => {
+                Self::has_dirac(materials, *first) || Self::has_dirac(materials, *second)
+            }
+            Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
+                Self::has_dirac(materials, *inside)
+            }
+            Self::Diffuse { .. }
+            | Self::Phong { .. }
+            | Self::RoughConductor { .. }
+            | Self::RoughDielectric { .. }
+            | Self::DiffuseTransmission { .. }
+            | Self::Principled(_)
+            | Self::MetallicRoughness(_)
+            | Self::Null => false,
+        }
+    }
+
+    /// Whether light may go through, masks aside.
+    pub(crate) fn is_clear(&self, materials: &Arena<Self>, textures: &Textures) -> bool {
+        let is_nothing = |texture| textures.list[texture] == Texture::Constant(Rgb::BLACK);
+        match self {
+            Self::Dielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::RoughDielectric { .. }
+            | Self::DiffuseTransmission { .. }
+            | Self::Null => true,
+            Self::Principled(principled) => !is_nothing(principled.spec_trans),
+            Self::MetallicRoughness(gltf) => !is_nothing(gltf.transmission),
+            Self::Blend { first, second, .. } => {
+                materials[*first].is_clear(materials, textures)
+                    || materials[*second].is_clear(materials, textures)
+            }
+            Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
+                materials[*inside].is_clear(materials, textures)
+            }
+            Self::Diffuse { .. }
+            | Self::Phong { .. }
+            | Self::Conductor { .. }
+            | Self::RoughConductor { .. }
+            | Self::Plastic { .. }
+            | Self::CoatedConductor { .. }
+            | Self::TwoSided { .. } => false,
+        }
+    }
+}
