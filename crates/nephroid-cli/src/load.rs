@@ -8,7 +8,8 @@ use nephroid::scene::{Remark, Scene, SceneError, Subject};
 use nephroid::shape::Geometry;
 use nephroid::world::World;
 use nephroid_formats::diagnostic::{Diagnostic, Diagnostics, Location};
-use nephroid_formats::mitsuba::{read_scene, read_scene_str};
+use nephroid_formats::mitsuba::{self, read_scene_str};
+use nephroid_formats::pbrt;
 use nephroid_formats::vfs::DiskFiles;
 use nephroid_formats::{Options, Origins, SceneFile};
 
@@ -54,8 +55,15 @@ pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Ident
     }
     check_readable(scene)?;
     let files = RecordingFiles::new(&DiskFiles);
-    let file = read_scene(scene, &files, &options).map_err(Failure::Scene)?;
+    let read = if is_pbrt(scene) { pbrt::read_scene } else { mitsuba::read_scene };
+    let file = read(scene, &files, &options).map_err(Failure::Scene)?;
     Ok((file, files.fingerprints(scene)))
+}
+
+/// Whether a file is called as those of pbrt are.
+fn is_pbrt(path: &Path) -> bool {
+    let name = path.to_string_lossy().to_ascii_lowercase();
+    name.strip_suffix(".gz").unwrap_or(&name).ends_with(".pbrt")
 }
 
 /// Tells a file that cannot be read, which is no fault of the scene.

@@ -9,7 +9,7 @@ pub mod mesh;
 pub mod mitsuba;
 mod number;
 mod open;
-//pub mod pbrt;
+pub mod pbrt;
 pub mod photons;
 mod scene_file;
 mod spectra;

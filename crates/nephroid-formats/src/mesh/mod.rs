@@ -3,6 +3,7 @@
 mod obj;
 mod ply;
 
+pub(crate) use obj::replace_missing_normals;
 pub use obj::read_obj;
 pub use ply::read_ply;
 
@@ -26,6 +27,8 @@ pub struct MeshFile {
     pub mesh: Mesh,
     /// Triangles without area that were left out.
     pub degenerate: usize,
+    /// Whether the normals are those of the file, and not computed.
+    pub has_own_normals: bool,
 }
 
 /// Why a file is not a mesh.
@@ -49,7 +52,7 @@ impl MeshError {
 }
 
 /// Leaves out triangles without area; an error if no others are left.
-fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
+pub(crate) fn without_degenerate(mut mesh: Mesh, has_own_normals: bool) -> Result<MeshFile, MeshError> {
     let all = mesh.triangles.len();
     if all == 0 {
         return Err(MeshError::new("the file has no faces"));
@@ -60,7 +63,7 @@ fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
     if degenerate == all {
         return Err(MeshError::new("no face of the file has an area"));
     }
-    Ok(MeshFile { mesh, degenerate })
+    Ok(MeshFile { mesh, degenerate, has_own_normals })
 }
 
 /// In double precision, so that small triangles are not taken for none.

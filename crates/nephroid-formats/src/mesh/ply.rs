@@ -66,7 +66,7 @@ pub fn read_ply(bytes: &[u8], options: MeshOptions) -> Result<MeshFile, MeshErro
     } else if !options.face_normals {
         mesh.compute_normals();
     }
-    without_degenerate(mesh)
+    without_degenerate(mesh, has_normals)
 }
 
 fn triangulate(

@@ -7,14 +7,13 @@ use std::rc::Rc;
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::math::{Affine2, Vec2};
-use nephroid::texture::{Bitmap, BitmapFilter, Image, Texture, Wrap};
+use nephroid::texture::{Bitmap, BitmapFilter, Pixmap, Texture, Wrap};
 
 use super::image::{Change, is_encoded};
 use super::light::luminance;
 use super::parameters::Parameters;
 use super::reader::Reader;
 use crate::diagnostic::Location;
-use crate::spectra::Role;
 
 /// What the shapes that follow shine with.
 #[derive(Debug)]
@@ -32,7 +31,7 @@ pub(super) struct AreaLight {
 #[derive(Debug)]
 enum Look {
     Even(Rgb),
-    Image(Handle<Image>, f32),
+    Image(Handle<Pixmap>, f32),
 }
 
 impl Reader<'_> {
@@ -87,11 +86,9 @@ impl Reader<'_> {
             Look::Image(image, scale) => {
                 let mut copy = *image;
                 if *scale * factor != 1.0 {
-                    let mut pixels = self.textures.images[*image].clone();
-                    for pixel in &mut pixels.pixels {
-                        *pixel = *pixel * (*scale * factor);
-                    }
-                    copy = self.store_image(pixels, &light.at);
+                    let change = Change { scale: *scale * factor, ..Change::decoded(true) };
+                    let image = change.applied(&self.textures.images[*image]);
+                    copy = self.store_image(image, &light.at);
                 }
                 // The first row is at v = 1.
                 let mut to_uv = Affine2::from_scale(Vec2::new(1.0, -1.0));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::texture::Image;
+use nephroid::texture::{Pixels, Pixmap};
 
 use super::parameters::Parameters;
 use super::reader::Reader;
@@ -20,7 +20,7 @@ pub(super) struct Change {
     pub(super) scale: f32,
     /// Taken from one after that.
     pub(super) invert: bool,
-    /// Made one number, the mean of the channels.
+    /// Made one number: opacity where the image has it, as pbrt does, else the mean of the channels.
     pub(super) grey: bool,
     /// The root taken, which makes a roughness the width of a distribution.
     pub(super) root: bool,
@@ -30,6 +30,22 @@ impl Change {
     /// Nothing but decoding.
     pub(super) fn decoded(raw: bool) -> Self {
         Self { raw, scale: 1.0, invert: false, grey: false, root: false }
+    }
+
+    /// An image with that done.
+    pub(super) fn applied(&self, image: &Pixmap) -> Pixmap {
+        let as_it_is = Self { grey: false, ..*self } == Self::decoded(self.raw);
+        let is_grey = image.alpha.is_none() && matches!(image.pixels, Pixels::Grey(..));
+        if as_it_is && (is_grey || !self.grey) {
+            return image.clone();
+        }
+        let of = |(index, pixel): (usize, Rgb)| match &image.alpha {
+            Some(plane) if self.grey => self.of(Rgb::splat(plane.value(index))),
+            _ => self.of(pixel),
+        };
+        let pixels = Pixels::Linear(image.pixels.iter().enumerate().map(of).collect());
+        let alpha = if self.grey { None } else { image.alpha.clone() };
+        Pixmap { width: image.width, height: image.height, pixels, alpha }
     }
 
     fn of(&self, pixel: Rgb) -> Rgb {
@@ -61,7 +77,7 @@ pub(super) fn is_encoded(name: &str) -> bool {
 
 impl Reader<'_> {
     /// The image that `filename` names.
-    pub(super) fn named_image(&mut self, parameters: &Parameters, change: Change) -> Option<Handle<Image>> {
+    pub(super) fn named_image(&mut self, parameters: &Parameters, change: Change) -> Option<Handle<Pixmap>> {
         let Some((name, at)) = parameters.text("filename") else {
             if !parameters.has("filename") {
                 let message = format!("{} \"{}\" lacks a filename", parameters.noun, parameters.kind);
@@ -77,22 +93,20 @@ impl Reader<'_> {
         }
         let mut image = self.decoded(&path, &bytes, change.raw, at)?;
         if change != Change::decoded(change.raw) {
-            for pixel in &mut image.pixels {
-                *pixel = change.of(*pixel);
-            }
+            image = change.applied(&image);
         }
         let handle = self.store_image(image, at);
         self.image_of.insert(key, handle);
         Some(handle)
     }
 
-    pub(super) fn store_image(&mut self, image: Image, at: &Location) -> Handle<Image> {
+    pub(super) fn store_image(&mut self, image: Pixmap, at: &Location) -> Handle<Pixmap> {
         self.origins.images.push(at.clone());
         self.textures.images.push(image)
     }
 
     /// The pixels of a file.
-    pub(super) fn decoded(&self, path: &Path, bytes: &[u8], raw: bool, at: &Location) -> Option<Image> {
+    pub(super) fn decoded(&self, path: &Path, bytes: &[u8], raw: bool, at: &Location) -> Option<Pixmap> {
         match read_texture(bytes, raw) {
             Ok(file) => {
                 if file.non_finite > 0 {

@@ -8,7 +8,7 @@ use nephroid::handle::Handle;
 use nephroid::light::{EnvironmentMapping, LightKind, ProjectorUnit};
 use nephroid::math::real::tan;
 use nephroid::math::{DMat3, DVec3, Transform};
-use nephroid::texture::Image;
+use nephroid::texture::Pixmap;
 
 use super::image::{Change, is_encoded};
 use super::light::luminance;
@@ -66,7 +66,7 @@ impl Reader<'_> {
         })
     }
 
-    fn light_image(&mut self, parameters: &Parameters) -> Option<Handle<Image>> {
+    fn light_image(&mut self, parameters: &Parameters) -> Option<Handle<Pixmap>> {
         let raw = parameters.text("filename").is_none_or(|(name, _)| !is_encoded(name));
         self.named_image(parameters, Change::decoded(raw))
     }
@@ -109,7 +109,7 @@ impl Reader<'_> {
 
 /// What a patch that faces +z gets from a square of equal areas: the directions above it lie in the rhombus
 /// |x| + |y| ≤ 1 of [−1, 1]², at heights of 1 − (|x| + |y|)² (Clarberg 2008).
-fn illuminance(image: &Image) -> f64 {
+fn illuminance(image: &Pixmap) -> f64 {
     let place = |i: u32, size: u32| (f64::from(i) + 0.5) / f64::from(size) * 2.0 - 1.0;
     let mut sum = 0.0;
     for y in 0..image.height {
@@ -122,7 +122,7 @@ fn illuminance(image: &Image) -> f64 {
 }
 
 /// The power of a projector of unit scale, in lumens per 683: the mean of intensity over the solid angle.
-fn projected(image: &Image, fov_deg: f32) -> f64 {
+fn projected(image: &Pixmap, fov_deg: f32) -> f64 {
     let aspect = f64::from(image.width) / f64::from(image.height);
     let tan = f64::from(tan((0.5 * fov_deg).to_radians()));
     let half = if aspect > 1.0 { (tan * aspect, tan) } else { (tan, tan / aspect) };
@@ -145,14 +145,14 @@ mod tests {
     /// A sky of radiance one lights what faces it with π; 256² pixels are within a part in 10⁴ of the integral.
     #[test]
     fn an_even_sky_lights_with_pi() {
-        let image = Image::filled(256, 256, Rgb::WHITE);
+        let image = Pixmap::filled(256, 256, Rgb::WHITE);
         assert!((illuminance(&image) - PI).abs() < 1e-3, "{}", illuminance(&image));
     }
 
     /// The solid angle of a face of a cube as seen from its middle is 4π/6.
     #[test]
     fn a_projector_that_sees_a_right_angle_fills_a_sixth() {
-        let image = Image::filled(256, 256, Rgb::WHITE);
+        let image = Pixmap::filled(256, 256, Rgb::WHITE);
         assert!((projected(&image, 90.0) - 4.0 * PI / 6.0).abs() < 1e-3);
     }
 }

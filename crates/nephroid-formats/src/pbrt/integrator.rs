@@ -22,11 +22,8 @@ impl Reader<'_> {
             "sppm" => "ppm",
             other => other,
         };
-        let mut request = IntegratorRequest {
-            name: name.to_owned(),
-            location: Some(parameters.at.clone()),
-            ..IntegratorRequest::default()
-        };
+        let mut request = IntegratorRequest::default();
+        (request.name, request.location) = (name.to_owned(), Some(parameters.at.clone()));
         // There the light that is seen at once has depth 0, here 1.
         let depth = parameters.integer("maxdepth", DEFAULT_DEPTH, 0..=i32::MAX as u32);
         let at = parameters.any("maxdepth").map_or(&parameters.at, |p| &p.value_at).clone();

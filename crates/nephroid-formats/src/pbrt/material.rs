@@ -6,7 +6,6 @@ use nephroid::material::{Material, Metal};
 use nephroid::math::{Affine2, Vec2};
 use nephroid::texture::{Bitmap, BitmapFilter, Texture, Wrap};
 
-use super::image::Change;
 use super::named::metal_index;
 use super::names::{MATERIALS, MATERIALS_APPROXIMATED, MATERIALS_OLD};
 use super::parameter::Kind;

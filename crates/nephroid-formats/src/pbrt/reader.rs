@@ -11,7 +11,7 @@ use nephroid::material::Material;
 use nephroid::math::Transform;
 use nephroid::medium::{Media, Medium};
 use nephroid::shape::{Group, Instance, Mesh, Shape};
-use nephroid::texture::{Image, Texture, Textures};
+use nephroid::texture::{Pixmap, Texture, Textures};
 
 use super::color_space::ColorSpace;
 use super::image::ImageKey;
@@ -76,7 +76,7 @@ pub(super) struct Reader<'t> {
     pub(super) material_sizes: Vec<u32>,
     pub(super) default_material: Option<Handle<Material>>,
     pub(super) masked: BTreeMap<(usize, usize), Handle<Material>>,
-    pub(super) image_of: BTreeMap<ImageKey, Handle<Image>>,
+    pub(super) image_of: BTreeMap<ImageKey, Handle<Pixmap>>,
     pub(super) mesh_of: BTreeMap<PathBuf, Handle<Mesh>>,
 }
 

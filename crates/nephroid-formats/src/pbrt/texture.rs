@@ -171,11 +171,11 @@ impl Reader<'_> {
         let wraps = [
             ("repeat", Some(Wrap::Repeat)),
             ("clamp", Some(Wrap::Clamp)),
-            ("black", None),
+            ("black", Some(Wrap::Black)),
             ("octahedralsphere", None),
         ];
         parameters.choice("wrap", Some(Wrap::Repeat), &wraps).unwrap_or_else(|| {
-            let message = "nothing around an image cannot be had yet: its edge goes on";
+            let message = "an image of a sphere cannot be had yet: its edge goes on";
             self.log.warn(&parameters.at, message);
             Wrap::Clamp
         })

@@ -50,12 +50,6 @@ impl Tokens {
         Location::new(&self.source, start..self.at.max(start))
     }
 
-    /// Where the text ends.
-    pub(super) fn end(&self) -> Location {
-        let end = self.source.text().len();
-        Location::new(&self.source, end..end)
-    }
-
     /// The next token, which stays the next.
     pub(super) fn peek(&mut self, log: &Log) -> Option<Token> {
         let before = self.at;
