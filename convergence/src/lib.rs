@@ -38,7 +38,7 @@ use nephroid::film::{Crop, FilmSettings, Filter};
 use nephroid::handle::{Arena, Handle};
 use nephroid::integrator::{DirectSource, FinalGather, Method, PhotonMapperConfig};
 use nephroid::light::{Light, LightKind};
-use nephroid::material::{Material, Metal};
+use nephroid::material::{Dispersion, Material, Metal};
 use nephroid::math::{DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::Boundary;
 use nephroid::medium::Media;
@@ -113,6 +113,12 @@ impl Builder {
             specular_reflectance: one,
             specular_transmittance: one,
         })
+    }
+
+    /// Smooth glass in air that takes light apart.
+    pub fn dispersive_glass(&mut self, dispersion: Dispersion) -> Handle<Material> {
+        let inside = self.glass(dispersion.nominal_ior());
+        self.scene.materials.push(Material::Dispersive { dispersion, inside })
     }
 
     /// The same material on both sides.

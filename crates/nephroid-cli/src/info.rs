@@ -137,6 +137,7 @@ pub fn material(material: &Material) -> &'static str {
         Material::ThinDielectric { .. } => "thindielectric",
         Material::TwoSided { .. } => "twosided",
         Material::Mask { .. } => "mask",
+        Material::Dispersive { .. } => "dispersive dielectric",
         Material::RoughConductor { .. } => "roughconductor",
         Material::RoughDielectric { .. } => "roughdielectric",
         Material::Plastic { roughness: None, .. } => "plastic",

@@ -3,7 +3,7 @@
 use super::{LightPart, Probe};
 use crate::color::Rgb;
 use crate::light::Emitter;
-use crate::material::{Transport, segments_by};
+use crate::material::{LobeKind, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::sampling::Sampler;
 use crate::transport::{PixelSample, survival};
@@ -98,13 +98,13 @@ impl Way {
                 probe.light(LightPart::Emitted, light);
             }
             let Some(hit) = hit else { break };
-            let bsdf = world.bsdf_within(&hit, wo, &self.inside);
+            let bsdf = world.meet(&hit, wo, &mut self.inside, &mut self.throughput, sampler);
             let pass = |wi| (leave(&hit.point, wi), world.cross(self.inside, &hit, -wo, wi));
             if bsdf.is_null() {
                 (self.ray, self.inside) = pass(-wo);
                 continue;
             }
-            if !bsdf.is_dirac() {
+            if !bsdf.has(LobeKind::Dirac) {
                 break;
             }
             let mut branches = bsdf.dirac_lobes(wo, Transport::Radiance).map(|lobe| {

@@ -151,7 +151,7 @@ impl Estimator for LightTracer<'_> {
             if let Some((_, emitted)) = world.emitted(&hit, wo) {
                 book(LightPart::Emitted, throughput * emitted, probe);
             }
-            let bsdf = world.bsdf_within(&hit, wo, &inside);
+            let bsdf = world.meet(&hit, wo, &mut inside, &mut throughput, &mut sample.sampler);
             if bsdf.is_null() {
                 inside = world.cross(inside, &hit, ray.direction, ray.direction);
                 ray = leave(&hit.point, ray.direction);

@@ -129,7 +129,7 @@ fn radiance<P: Probe>(
             };
             book(&mut out, so_far.part(last), throughput * emitted * weight, probe);
         }
-        let bsdf = world.bsdf_within(&hit, wo, &inside);
+        let bsdf = world.meet(&hit, wo, &mut inside, &mut throughput, &mut sample.sampler);
         if bsdf.is_null() {
             inside = world.cross(inside, &hit, ray.direction, ray.direction);
             ray = leave(&hit.point, ray.direction);

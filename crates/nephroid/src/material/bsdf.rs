@@ -46,6 +46,12 @@ impl BsdfSample {
     pub fn is_dirac(&self) -> bool {
         self.lobe == LobeKind::Dirac
     }
+
+    /// Whether the lobe is too narrow for a density to be estimated from photons.
+    #[inline]
+    pub fn is_specular(&self) -> bool {
+        self.lobe != LobeKind::Broad
+    }
 }
 
 /// Segments that a path has more behind a surface: none where it goes straight on, as through thin glass. Mitsuba's
@@ -71,6 +77,7 @@ pub struct Bsdf {
     ng: Vec3,
     frame: Frame,
     lobes: Lobes,
+    disperses: bool,
 }
 
 /// The kinds of scattering; one file each.
@@ -87,7 +94,7 @@ pub(super) enum Lobes {
 
 impl Bsdf {
     pub(super) fn new(ng: Vec3, frame: Frame, lobes: Lobes) -> Self {
-        Self { ng, frame, lobes }
+        Self { ng, frame, lobes, disperses: false }
     }
 
     /// The same place with no surface.
@@ -102,6 +109,17 @@ impl Bsdf {
             Lobes::Dielectric(own) => Self { lobes: Lobes::Dielectric(Dielectric { eta, ..own }), ..self },
             _ => self,
         }
+    }
+
+    /// The same, the boundary of a glass that takes light apart, met by a path of all wavelengths.
+    pub(crate) fn dispersing(self) -> Self {
+        Self { disperses: matches!(self.lobes, Lobes::Dielectric(_)), ..self }
+    }
+
+    /// Whether other wavelengths are refracted another way, so that a path must be of a single one.
+    #[inline]
+    pub(crate) fn disperses(&self) -> bool {
+        self.disperses
     }
 
     /// Whether all scattering is in Dirac lobes, so that there is no density to estimate here.
@@ -135,6 +153,17 @@ impl Bsdf {
     /// The lobes of one class alone. The three parts add up to the whole.
     pub fn part(&self, kind: LobeKind) -> Self {
         if self.has(kind) { *self } else { Self { lobes: Lobes::Black, ..*self } }
+    }
+
+    /// All lobes but the broad ones.
+    pub fn without_broad(&self) -> Self {
+        if self.has(LobeKind::Broad) { Self { lobes: Lobes::Black, ..*self } } else { *self }
+    }
+
+    /// Whether there are lobes that are too narrow for a density to be estimated from photons.
+    #[inline]
+    pub fn has_specular(&self) -> bool {
+        self.has(LobeKind::Dirac) || self.has(LobeKind::Sharp)
     }
 
     /// Whether [`eval`](Self::eval) may be above zero for directions on opposite sides.

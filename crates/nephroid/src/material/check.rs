@@ -93,6 +93,18 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
             problems.opacity(*opacity);
             problems.stored_before("inside", materials, material, *inside);
         }
+        Material::Dispersive { dispersion, inside } => {
+            problems.list.extend(dispersion.problem());
+            problems.stored_before("inside", materials, material, *inside);
+            if materials.contains(*inside)
+                && !matches!(
+                    materials[*inside],
+                    Material::Dielectric { .. } | Material::RoughDielectric { .. }
+                )
+            {
+                problems.add("only a dielectric can be dispersive");
+            }
+        }
         Material::Null => {}
     }
     problems.list
@@ -308,7 +320,7 @@ fn two_sided_already(
     material: Handle<Material>,
 ) -> Option<&'static str> {
     match &materials[material] {
-        Material::Dielectric { .. } => Some("a dielectric"),
+        Material::Dielectric { .. } | Material::Dispersive { .. } => Some("a dielectric"),
         Material::ThinDielectric { .. } => Some("a thin dielectric"),
         Material::Null => Some("a null material"),
         Material::RoughDielectric { .. } => Some("a rough dielectric"),

@@ -4,13 +4,18 @@ use crate::handle::{Arena, Handle};
 use crate::texture::{TexturePoint, Textures};
 
 impl Material {
-    /// The material inside all masks.
+    /// The material inside all masks, and of dispersive glass the glass.
     pub fn unmasked(materials: &Arena<Self>, material: Handle<Self>) -> Handle<Self> {
         let mut material = material;
-        while let Self::Mask { inside, .. } = materials[material] {
+        while let Self::Mask { inside, .. } | Self::Dispersive { inside, .. } = materials[material] {
             material = inside;
         }
         material
+    }
+
+    /// Whether the surface is there by chance.
+    pub fn is_masked(materials: &Arena<Self>, material: Handle<Self>) -> bool {
+        matches!(materials[material], Self::Mask { .. })
     }
 
     /// The probability, in [0, 1], that the surface is there at a point: the product over its masks, and 1

@@ -8,6 +8,7 @@ mod bsdf;
 mod check;
 mod conductor;
 mod dielectric;
+mod dispersion;
 mod fresnel;
 mod kind;
 mod lambertian;
@@ -23,6 +24,7 @@ mod surface;
 pub(crate) use bsdf::segments_by;
 pub use bsdf::{Bsdf, BsdfSample, Transport};
 pub use check::check;
+pub use dispersion::Dispersion;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric};
 pub use kind::LobeKind;
 pub use metallic_roughness::MetallicRoughness;
@@ -98,6 +100,14 @@ pub enum Material {
         /// their luminance.
         opacity: Handle<Texture>,
         /// How the surface scatters where it is there.
+        inside: Handle<Material>,
+    },
+    /// Glass that takes light apart: its `int_ior` is the [`Dispersion`]'s, for paths of one wavelength; where there is none yet,
+    /// and for whoever asks for the index, it is as it says.
+    Dispersive {
+        /// The index of refraction on the side the normal points away from.
+        dispersion: Dispersion,
+        /// A dielectric boundary.
         inside: Handle<Material>,
     },
     /// A metal with a rough surface. One-sided.

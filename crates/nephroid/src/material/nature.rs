@@ -17,9 +17,10 @@ impl Material {
             Self::TwoSided { front: first, back: second } | Self::Blend { first, second, .. } => {
                 Self::has_dirac(materials, *first) || Self::has_dirac(materials, *second)
             }
-            Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
-                Self::has_dirac(materials, *inside)
-            }
+            Self::Mask { inside, .. }
+            | Self::Dispersive { inside, .. }
+            | Self::NormalMap { inside, .. }
+            | Self::BumpMap { inside, .. } => Self::has_dirac(materials, *inside),
             Self::Diffuse { .. }
             | Self::Phong { .. }
             | Self::RoughConductor { .. }
@@ -46,9 +47,10 @@ impl Material {
                 materials[*first].is_clear(materials, textures)
                     || materials[*second].is_clear(materials, textures)
             }
-            Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
-                materials[*inside].is_clear(materials, textures)
-            }
+            Self::Mask { inside, .. }
+            | Self::Dispersive { inside, .. }
+            | Self::NormalMap { inside, .. }
+            | Self::BumpMap { inside, .. } => materials[*inside].is_clear(materials, textures),
             Self::Diffuse { .. }
             | Self::Phong { .. }
             | Self::Conductor { .. }

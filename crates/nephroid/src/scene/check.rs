@@ -280,7 +280,10 @@ fn check_priority(scene: &Scene, shape: &Shape, subject: Subject, problems: &mut
         problems.add(subject, message);
     }
     if scene.materials.contains(shape.material)
-        && !matches!(scene.materials[shape.material], Material::Dielectric { .. } | Material::Null)
+        && !matches!(
+            scene.materials[shape.material],
+            Material::Dielectric { .. } | Material::Dispersive { .. } | Material::Null
+        )
     {
         let message = "only what light goes into has a priority: make it a smooth dielectric or `null`, or take \
                        the priority away";
@@ -363,7 +366,8 @@ fn check_emitted(scene: &Scene, emission: Handle<Texture>, subject: Subject, pro
     }
 }
 
-fn is_negative(image: &Pixmap) -> bool {
+/// Whether any pixel has a negative channel.
+pub(super) fn is_negative(image: &Pixmap) -> bool {
     image.pixels.iter().any(|p| p.min_channel() < 0.0)
 }
 

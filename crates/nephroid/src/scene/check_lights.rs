@@ -1,6 +1,6 @@
 //! What lights must satisfy to be rendered.
 
-use super::check::{Problems, check_emission, check_light_value, check_transform, finite};
+use super::check::{Problems, check_emission, check_light_value, check_transform, finite, is_negative};
 use super::{Scene, Subject};
 use crate::handle::Handle;
 use crate::light::{EnvironmentMapping, LightKind};
@@ -102,7 +102,7 @@ fn check_image(
         return;
     }
     let image = &scene.textures.images[image];
-    if image.pixels.iter().any(|p| p.min_channel() < 0.0) {
+    if is_negative(image) {
         problems.add(subject, "a pixel of its image is negative: light cannot be");
     }
     if mapping == Some(EnvironmentMapping::EqualArea) && image.width != image.height {
@@ -123,6 +123,7 @@ mod tests {
     use crate::film::{FilmSettings, Filter};
     use crate::light::{Light, ProjectorUnit};
     use crate::math::Vec3;
+    use crate::texture::Image;
 
     #[test]
     fn lights_that_make_no_sense_are_refused() {
@@ -130,7 +131,7 @@ mod tests {
             Camera { to_world: Transform::IDENTITY, projection: Projection::Orthographic, medium: None };
         let film = FilmSettings { width: 1, height: 1, crop: None, filter: Filter::Box };
         let mut scene = Scene::new(camera, film);
-        let image = scene.textures.images.push(Pixmap::filled(2, 1, Rgb::WHITE));
+        let image = scene.textures.images.push(Image::filled(2, 1, Rgb::WHITE).into());
         let to_world = Transform::IDENTITY;
         let kinds = [
             LightKind::Environment { image, mapping: EnvironmentMapping::EqualArea, scale: 1.0, to_world },

@@ -1,7 +1,7 @@
 //! Direct light by next event estimation.
 
 use crate::color::Rgb;
-use crate::material::{Bsdf, Transport};
+use crate::material::{Bsdf, LobeKind, Transport};
 use crate::math::Vec3;
 use crate::medium::Phase;
 use crate::sampling::{Sampler, power_heuristic};
@@ -25,6 +25,8 @@ pub(crate) enum Partner {
     None,
     /// A ray in a direction sampled from the BSDF.
     BsdfSample,
+    /// The same, and photons, which have all light of Dirac lamps.
+    BsdfSampleAndPhotons,
 }
 
 /// A vertex of a path: of one from the camera, where direct light is estimated, or of one from a light, which is
@@ -51,6 +53,30 @@ impl<'a> Lit<'a> {
         match self.scatterer {
             Scatterer::Surface { hit, .. } => Vantage::Surface(&hit.point),
             Scatterer::Medium { position, .. } => Vantage::Space(position),
+        }
+    }
+
+    /// Whether anything is scattered by lobes with a density.
+    pub fn has_density(&self) -> bool {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => !bsdf.is_dirac() && !bsdf.is_black(),
+            Scatterer::Medium { .. } => true,
+        }
+    }
+
+    /// Whether a density is estimated from photons here.
+    pub fn gathers(&self) -> bool {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => bsdf.has(LobeKind::Broad),
+            Scatterer::Medium { .. } => true,
+        }
+    }
+
+    /// Whether light may leave by lobes that caustics are made by.
+    pub fn has_specular(&self) -> bool {
+        match self.scatterer {
+            Scatterer::Surface { bsdf, .. } => bsdf.has_specular(),
+            Scatterer::Medium { .. } => false,
         }
     }
 
@@ -147,6 +173,9 @@ pub(crate) fn one_light(
     let Some(incident) = emitter.sample_incident(world.lookup(), from.position(), u) else {
         return Rgb::BLACK;
     };
+    if incident.dirac && partner == Partner::BsdfSampleAndPhotons {
+        return Rgb::BLACK;
+    }
     let scattered = lit.eval(incident.wi) * incident.radiance;
     if scattered.is_black() {
         return Rgb::BLACK;
@@ -158,7 +187,9 @@ pub(crate) fn one_light(
     }
     let pdf = incident.pdf_solid_angle * probability;
     let weight = match partner {
-        Partner::BsdfSample if !incident.dirac => power_heuristic(pdf, lit.pdf(incident.wi)),
+        Partner::BsdfSample | Partner::BsdfSampleAndPhotons if !incident.dirac => {
+            power_heuristic(pdf, lit.pdf(incident.wi))
+        }
         _ => 1.0,
     };
     scattered * through * (weight / pdf)

@@ -2,8 +2,8 @@
 
 use super::roulette::effort;
 
-/// What a photon's path makes of it, decided here and nowhere else. L is the light, S a Dirac
-/// bounce, D any other, V a collision in a medium; null surfaces count as nothing. The last letter is where the
+/// What a photon's path makes of it, decided here and nowhere else. L is the light, S a bounce by a Dirac lobe or
+/// one nearly so sharp, D any other, V a collision in a medium; null surfaces count as nothing. The last letter is where the
 /// photon lies: D on a surface, V in a medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhotonKind {
@@ -75,8 +75,8 @@ impl History {
         }
     }
 
-    pub fn bounce(&mut self, dirac: bool) {
-        if dirac {
+    pub fn bounce(&mut self, specular: bool) {
+        if specular {
             self.specular += 1;
         } else {
             self.from_caustic |= self.other == 0 && self.specular > 0 && !self.from_medium;

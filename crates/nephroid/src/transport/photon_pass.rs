@@ -3,7 +3,7 @@
 use super::emit::{Job, Kept, emit};
 use super::history::PhotonKind;
 use super::ledger::Ledger;
-use super::plan::{PhotonPlan, PhotonTargets, VolumeKind, stored_in_volume};
+use super::plan::{PhotonPlan, PhotonTargets, VolumeKind, after_caustic, is_read, stored_in_volume};
 use super::walk::{Event, MapKind, Next, WalkSettings};
 use crate::observer::{Observer, Phase, Work};
 use crate::photon_map::{Beams, Photons, VolumePhotons};
@@ -169,20 +169,24 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
             PhotonKind::Direct => [extras.direct, false],
             PhotonKind::Caustic => [false, false],
         };
+        let lists = if is_read(world, &event) { lists } else { [false, false] };
         Kept { item: record(state, path, event), lists, next: Next::Continue }
     })?;
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
-    let beyond = if extras.unseen { Next::Continue } else { Next::Stop };
     let caustic_job = job(MapKind::Caustic, plan.caustic.paths, caustic_key);
     let ([caustic, afterglow], _) = emit(&caustic_job, |state, path, event, kind| {
         let (lists, next) = match (&event, kind) {
-            (Event::Start(_) | Event::Way(_) | Event::Bounce(..), _) => ([false, false], Next::Continue),
+            (Event::Start(_) | Event::Way(_), _) => ([false, false], Next::Continue),
+            (Event::Bounce(..), PhotonKind::Caustic) if extras.unseen => ([false, false], Next::Continue),
             // Whatever follows is the global map's.
-            (Event::Collision(..), _) => ([false, false], Next::Stop),
-            (_, PhotonKind::Caustic) => ([true, false], beyond),
+            (Event::Bounce(..) | Event::Collision(..), _) => ([false, false], after_caustic(&event)),
+            (_, PhotonKind::Caustic) if extras.unseen => ([true, false], Next::Continue),
+            (_, PhotonKind::Caustic) => ([true, false], after_caustic(&event)),
             (_, PhotonKind::Afterglow) => ([false, true], Next::Stop),
-            (_, PhotonKind::Direct | PhotonKind::Haze | PhotonKind::Global) => ([false, false], Next::Stop),
+            (_, PhotonKind::Direct) => ([false, false], after_caustic(&event)),
+            (_, PhotonKind::Haze | PhotonKind::Global) => ([false, false], Next::Stop),
         };
+        let lists = if is_read(world, &event) { lists } else { [false, false] };
         Kept { item: record(state, path, event), lists, next }
     })?;
     Some(Stored { global, caustic, afterglow, haze, ledger })

@@ -181,7 +181,7 @@ fn count(
                 let mut sampler = Sampler::new(Sequence::Independent, key, path);
                 walk(world, settings, map, path, &mut sampler, &mut books.lights, |event, kind| {
                     let (counts, next) = tried(map, targets, &event, kind);
-                    stored += u64::from(counts);
+                    stored += u64::from(counts && is_read(world, &event));
                     next
                 });
             }
@@ -208,12 +208,33 @@ fn tried(map: MapKind, targets: &PhotonTargets, event: &Event<'_>, kind: PhotonK
             (counts && matches!(event, Event::Surface(..)), Next::Continue)
         }
         MapKind::Caustic => match event {
-            Event::Surface(..) => (kind == PhotonKind::Caustic, Next::Stop),
-            Event::Collision(..) => (false, Next::Stop),
-            Event::Start(_) | Event::Way(_) | Event::Bounce(..) => (false, Next::Continue),
+            Event::Surface(..) => (kind == PhotonKind::Caustic, after_caustic(event)),
+            Event::Collision(..) | Event::Bounce(..) => (false, after_caustic(event)),
+            Event::Start(_) | Event::Way(_) => (false, Next::Continue),
         },
         MapKind::Volume | MapKind::VolumeCaustic => stored_in_volume(map, targets, event, kind),
     }
+}
+
+/// Whether anything reads a photon: surfaces without a broad lobe are followed, not estimated at, but for the light of Dirac
+/// lamps that came by specular surfaces, which no ray finds.
+pub(super) fn is_read(world: &World, event: &Event<'_>) -> bool {
+    match event {
+        Event::Surface(photon, lit) => lit.gathers() || world.emitters()[photon.light as usize].is_dirac(),
+        _ => true,
+    }
+}
+
+/// Whether a path goes on that is to make a caustic, after light met a surface or was scattered: only by lobes that are
+/// specular, for whatever follows others is no caustic.
+pub(super) fn after_caustic(event: &Event<'_>) -> Next {
+    let goes_on = match event {
+        Event::Surface(_, lit) => lit.has_specular(),
+        Event::Bounce(_, bounce) => bounce.specular,
+        Event::Collision(..) => false,
+        Event::Start(_) | Event::Way(_) => true,
+    };
+    if goes_on { Next::Continue } else { Next::Stop }
 }
 
 /// Whether an event belongs in a map of light in media, and whether another of its path may.
@@ -236,10 +257,9 @@ pub(super) fn stored_in_volume(
         return (fits && belongs, Next::Continue);
     }
     match (event, kind) {
-        // Whatever follows a surface that is not specular, or a collision, is no caustic.
-        (Event::Surface(..), _) => (false, Next::Stop),
+        (Event::Surface(..) | Event::Bounce(..), _) => (false, after_caustic(event)),
         (Event::Collision(..), kind) => (fits && kind == PhotonKind::Caustic, Next::Stop),
-        (Event::Start(_) | Event::Bounce(..), _) => (false, Next::Continue),
+        (Event::Start(_), _) => (false, Next::Continue),
         (Event::Way(_), kind) => (fits && kind == PhotonKind::Caustic, Next::Continue),
     }
 }

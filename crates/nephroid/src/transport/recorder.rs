@@ -12,7 +12,7 @@ use crate::world::World;
 /// The bounces of a photon's path before it landed.
 ///
 /// Displayed in the notation of Heckbert (1990, *Adaptive Radiosity Textures…*): `L` for the light, `S` for a
-/// Dirac bounce, `V` for a collision in a medium, `D` for any other, the landing included: `LSSD` is light that went
+/// bounce by a Dirac lobe or one nearly as narrow, `V` for a collision in a medium, `D` for any other, the landing included: `LSSD` is light that went
 /// through a glass ball, and `LSSV` the same where a medium scatters it.
 /// Of very long paths the middle is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -123,8 +123,13 @@ impl Trail {
         match event {
             Event::Surface(..) => self.meet(Some('D')),
             Event::Collision(..) => self.meet(Some('V')),
-            Event::Bounce(_, bounce) if bounce.dirac => {
-                self.meet(None);
+            Event::Bounce(lit, bounce) if bounce.specular => {
+                // Where it landed just now it has gone on by a specular lobe.
+                if lit.has_density() {
+                    self.last = None;
+                } else {
+                    self.meet(None);
+                }
                 self.bounces.push('S');
             }
             Event::Start(_) | Event::Way(_) | Event::Bounce(..) => {}

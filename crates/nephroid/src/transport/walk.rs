@@ -106,6 +106,8 @@ pub(crate) struct Bounce {
     /// Of `wi`; 0 for a Dirac lobe.
     pub pdf_solid_angle: f32,
     pub dirac: bool,
+    /// Whether the lobe is a Dirac or nearly one.
+    pub specular: bool,
 }
 
 /// A photon on its way.
@@ -235,7 +237,9 @@ fn step(
         return Next::Stop;
     };
     let wo = -walker.ray.direction;
-    let bsdf = world.bsdf_within(&hit, wo, &walker.inside);
+    let mut power = walker.power;
+    let bsdf = world.meet(&hit, wo, &mut walker.inside, &mut power, sampler);
+    walker.gamble(walker.power, power);
     if bsdf.is_null() {
         walker.inside = world.cross(walker.inside, &hit, -wo, -wo);
         walker.ray = leave(&hit.point, -wo);
@@ -262,12 +266,16 @@ fn step(
     }
     let vertex = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside: walker.inside };
     let BsdfSample { wi, pdf_solid_angle, .. } = sample;
-    let dirac = sample.is_dirac();
-    visit(Event::Bounce(&vertex, Bounce { wi, pdf_solid_angle, dirac }), walker.history.kind());
+    let (dirac, specular) = (sample.is_dirac(), sample.is_specular());
+    let bounce = Bounce { wi, pdf_solid_angle, dirac, specular };
+    if visit(Event::Bounce(&vertex, bounce), walker.history.kind()) == Next::Stop {
+        book.end(walker.power);
+        return Next::Stop;
+    }
     if segments_by(wo, sample.wi) == 0 {
         walker.history.pass();
     } else {
-        walker.history.bounce(dirac);
+        walker.history.bounce(specular);
     }
     walker.inside = world.cross(walker.inside, &hit, -wo, sample.wi);
     walker.ray = leave(&hit.point, sample.wi);
@@ -334,7 +342,8 @@ fn collide(
         return Next::Stop;
     }
     let PhaseSample { wi, pdf_solid_angle } = matter.phase().sample(wo, u);
-    visit(Event::Bounce(&vertex, Bounce { wi, pdf_solid_angle, dirac: false }), kind);
+    let bounce = Bounce { wi, pdf_solid_angle, dirac: false, specular: false };
+    visit(Event::Bounce(&vertex, bounce), kind);
     walker.history.collide();
     walker.ray = Ray::new(position, wi);
     Next::Continue

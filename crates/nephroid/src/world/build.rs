@@ -1,3 +1,4 @@
+use super::hues::Hues;
 use super::level::{Item, Level, Other};
 use super::nest::ranks;
 use super::placed::Placed;
@@ -50,11 +51,12 @@ impl World {
                     material: s.material,
                     flipped: s.flip_normals,
                     invisible,
-                    masked: inside != s.material && !invisible,
+                    masked: Material::is_masked(&scene.materials, s.material) && !invisible,
                     colored: matches!(s.geometry, Geometry::Mesh(mesh) if !scene.meshes[mesh].colors.is_empty()),
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
                     rank: 0,
+                    disperses: Material::dispersion(&scene.materials, s.material).is_some(),
                 }
             })
             .collect();
@@ -64,6 +66,7 @@ impl World {
         }
         let transparent = surfaces.iter().any(|s| s.invisible);
         let cutouts = surfaces.iter().any(|s| s.masked);
+        let dispersive = surfaces.iter().any(|s| s.disperses);
         let Media { list, grids } = &scene.media;
         let anywhere = scene.has_media();
         let matters = list.iter().take_while(|_| anywhere).map(|m| Matter::new(m, grids)).collect();
@@ -79,6 +82,7 @@ impl World {
             by_power,
             for_direct,
             camera,
+            hues: dispersive.then(Hues::new).flatten(),
             bounds,
             aims,
             lamps,

@@ -6,6 +6,7 @@ mod cutout;
 #[cfg(test)]
 mod cutout_tests;
 mod glow;
+mod hues;
 mod level;
 mod nest;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::hues::Hues;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
 use crate::camera::CameraRays;
@@ -60,6 +62,8 @@ pub struct World {
     /// Emitters as next event estimation asks them.
     for_direct: Option<Discrete>,
     camera: CameraRays,
+    /// What paths are taken apart into; `None` if no glass does that.
+    hues: Option<Hues>,
     bounds: Bounds,
     aims: Aims,
     /// What each emitter is in the scene.
@@ -90,6 +94,8 @@ struct Surfaced {
     boundary: Option<Boundary>,
     /// Its place among the shapes that have a priority; 0 if it has none.
     rank: Rank,
+    /// Whether it refracts each wavelength another way.
+    disperses: bool,
 }
 
 /// Where a ray meets a surface, as the search finds it: see [`World::nearest`].

@@ -5,9 +5,10 @@
 //! higher one, there is no surface and only the list changes. Of equal priorities the shape that stands first in the
 //! scene is the higher one, so that what is where depends on no path.
 
-use super::{Hit, Surroundings, World};
+use super::{Hit, Surfaced, Surroundings, World};
+use crate::color::Wavelength;
 use crate::handle::Handle;
-use crate::material::{Bsdf, Material};
+use crate::material::{Bsdf, Dispersion, Material};
 use crate::math::Vec3;
 use crate::medium::Medium;
 use crate::scene::Scene;
@@ -54,6 +55,7 @@ pub(super) struct Ranked {
     pub shape: u32,
     /// Its index of refraction, if it has one.
     ior: Option<f32>,
+    dispersion: Option<Dispersion>,
     pub interior: Option<Handle<Medium>>,
 }
 
@@ -64,13 +66,24 @@ pub(super) fn ranks(scene: &Scene) -> Vec<Ranked> {
     order.sort_by_key(|&(priority, i, _)| (priority, std::cmp::Reverse(i)));
     let ranked = order.into_iter().map(|(_, shape, described)| Ranked {
         shape,
-        ior: match scene.materials[described.material] {
+        ior: match scene.materials[Material::unmasked(&scene.materials, described.material)] {
             Material::Dielectric { int_ior, .. } => Some(int_ior),
             _ => None,
         },
+        dispersion: Material::dispersion(&scene.materials, described.material),
         interior: described.boundary.interior,
     });
     ranked.collect()
+}
+
+impl Ranked {
+    /// Its index of refraction for a path of this wavelength, or of all, if it has one.
+    fn ior(&self, wavelength: Option<Wavelength>) -> Option<f32> {
+        match (self.dispersion, wavelength) {
+            (Some(dispersion), Some(wavelength)) => Some(dispersion.ior(wavelength)),
+            _ => self.ior,
+        }
+    }
 }
 
 impl World {
@@ -88,21 +101,47 @@ impl World {
     #[inline]
     pub(crate) fn bsdf_within(&self, hit: &Hit, wo: Vec3, inside: &Surroundings) -> Bsdf {
         let bsdf = self.bsdf(hit, wo);
-        match self.surfaces[hit.shape as usize].rank {
-            0 => bsdf,
-            rank => self.ranked_bsdf(bsdf, rank, self.beside(rank, hit, -wo, inside)),
+        match self.surfaces[hit.shape as usize] {
+            Surfaced { rank: 0, disperses: false, .. } => bsdf,
+            Surfaced { rank: 0, .. } => self.dispersive_bsdf(bsdf, hit, inside.wavelength),
+            Surfaced { rank, .. } => {
+                self.ranked_bsdf(bsdf, rank, self.beside(rank, hit, -wo, inside), inside.wavelength)
+            }
         }
     }
 
-    fn ranked_bsdf(&self, bsdf: Bsdf, rank: Rank, beside: Rank) -> Bsdf {
+    fn ranked_bsdf(&self, bsdf: Bsdf, rank: Rank, beside: Rank, wavelength: Option<Wavelength>) -> Bsdf {
         if beside >= rank {
             return bsdf.nulled();
         }
-        let ior = |rank| self.ranked(rank).and_then(|ranked| ranked.ior);
-        match (ior(rank), ior(beside)) {
-            (Some(own), Some(other)) => bsdf.with_eta(own / other),
+        let [own, other] = [rank, beside].map(|rank| self.ranked(rank));
+        let disperses = |ranked: Option<&Ranked>| ranked.is_some_and(|r| r.dispersion.is_some());
+        let ior = |ranked: Option<&Ranked>| ranked.and_then(|ranked| ranked.ior(wavelength));
+        let bsdf = match (own, ior(own), ior(other)) {
+            (_, Some(own), Some(other)) => bsdf.with_eta(own / other),
+            (Some(ranked), Some(n), None) if ranked.dispersion.is_some() => {
+                bsdf.with_eta(n / self.ext_ior(ranked.shape))
+            }
             _ => bsdf,
+        };
+        if wavelength.is_none() && (disperses(own) || disperses(other)) { bsdf.dispersing() } else { bsdf }
+    }
+
+    /// The boundary of a glass without a priority that takes light apart.
+    fn dispersive_bsdf(&self, bsdf: Bsdf, hit: &Hit, wavelength: Option<Wavelength>) -> Bsdf {
+        let material = self.surfaces[hit.shape as usize].material;
+        match (Material::dispersion(&self.scene.materials, material), wavelength) {
+            (Some(dispersion), Some(wavelength)) => {
+                bsdf.with_eta(dispersion.ior(wavelength) / self.ext_ior(hit.shape))
+            }
+            (Some(_), None) => bsdf.dispersing(),
+            (None, _) => bsdf,
         }
+    }
+
+    /// The index of refraction outside of a shape, as its material has it.
+    fn ext_ior(&self, shape: u32) -> f32 {
+        if let Material::Dielectric { ext_ior, .. } = *self.material_of(shape) { ext_ior } else { 1.0 }
     }
 
     /// Whether there is no surface where a ray along `direction` meets a shape.

@@ -2,7 +2,7 @@
 
 use super::nest::Nest;
 use super::{Hit, RayHit, Surfaced, World, leave};
-use crate::color::Rgb;
+use crate::color::{Rgb, Wavelength};
 use crate::handle::Handle;
 use crate::light::Source;
 use crate::math::{Ray, Vec3, offset_origin};
@@ -10,7 +10,7 @@ use crate::medium::{Boundary, Matter, Medium};
 use crate::sampling::Sampler;
 use crate::shape::SurfacePoint;
 
-/// What fills the space that a path is in.
+/// What fills the space that a path is in, and of what wavelength its light is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Surroundings {
     pub(super) medium: Option<Handle<Medium>>,
@@ -20,6 +20,8 @@ pub struct Surroundings {
     pub(super) blind: bool,
     /// The shapes with priorities that it is inside of.
     pub(super) nest: Nest,
+    /// The wavelength of all the light on the path, if it has been taken apart.
+    pub(super) wavelength: Option<Wavelength>,
 }
 
 impl Surroundings {
@@ -30,7 +32,7 @@ impl Surroundings {
 
     /// The same for a path that takes no notice of media.
     pub fn blind(self) -> Self {
-        Self { medium: None, outside: None, blind: true, nest: self.nest }
+        Self { medium: None, outside: None, blind: true, ..self }
     }
 
     /// The medium, if there is one.

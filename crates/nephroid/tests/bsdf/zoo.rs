@@ -2,7 +2,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::{Arena, Handle};
-use nephroid::material::{Bsdf, Material, Metal, Surface};
+use nephroid::material::{Bsdf, Dispersion, Material, Metal, Surface};
 use nephroid::math::{Frame, Vec2, Vec3, real, warp};
 use nephroid::texture::{Texture, Textures};
 
@@ -88,6 +88,15 @@ impl Zoo {
         let pane =
             Material::ThinDielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance };
         self.add_lossless("pane", pane, true);
+        let (int_ior, ext_ior) = (1.6, 1.0);
+        let inside = self.materials.push(Material::Dielectric {
+            int_ior,
+            ext_ior,
+            specular_reflectance,
+            specular_transmittance,
+        });
+        let dispersion = Dispersion::from_abbe(int_ior, 30.0);
+        self.add_lossless("prism", Material::Dispersive { dispersion, inside }, true);
         self.add_lossless("null", Material::Null, true);
     }
 
@@ -130,7 +139,7 @@ impl Zoo {
 
     /// The index of refraction on the side of `w`; one where the material says nothing of it.
     pub fn index(&self, case: &Case, surface: &Surface, w: Vec3) -> f32 {
-        match self.materials[case.material] {
+        match self.materials[Material::unmasked(&self.materials, case.material)] {
             Material::Dielectric { int_ior, .. } if w.dot(surface.ng) < 0.0 => int_ior,
             Material::Dielectric { ext_ior, .. } => ext_ior,
             _ => 1.0,
@@ -195,9 +204,10 @@ fn the_zoo_has_every_material() {
         Material::TwoSided { .. } => 5,
         Material::Null => 6,
         Material::Mask { .. } => 7,
-        _ => 8,
+        Material::Dispersive { .. } => 8,
+        _ => 9,
     };
-    for wanted in 0..=7 {
+    for wanted in 0..=8 {
         assert!(zoo.cases.iter().any(|case| kind(&zoo.materials[case.material]) == wanted), "{wanted}");
     }
 }

@@ -162,6 +162,11 @@ impl PhotonMapperConfig {
         }
     }
 
+    /// Whether light that comes from lamps straight is shown.
+    pub(crate) fn shows_direct(&self) -> bool {
+        matches!(self.show, Show::All | Show::Direct)
+    }
+
     /// Caustics count as direct light where that comes from photons, which are not stopped by glass.
     pub(crate) fn shows_caustics(&self) -> bool {
         matches!(self.show, Show::All | Show::Indirect | Show::Caustic)

@@ -4,34 +4,29 @@ mod equiangular;
 mod gather_rays;
 mod in_scatter;
 mod march;
+mod trace;
 
 use super::camera_plan::CameraPlan;
 use super::config::{DirectSource, PhotonMapperConfig, Show};
 use super::guide::Facing;
 use super::{Guides, Maps};
 use crate::color::Rgb;
-use crate::integrator::glances::{are_worth_it, glance, seen};
-use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Met, Probe};
-use crate::material::{Bsdf, BsdfSample, Transport, segments_by};
+use crate::integrator::glances::{are_worth_it, glance};
+use crate::integrator::{Components, Estimator, LightPart, LookUp, MapName, Probe};
+use crate::material::Bsdf;
 use crate::math::{Ray, Vec3};
 use crate::medium::Profile;
 use crate::photon_map::{Bandwidth, NearestList, Query, gather_both};
 use crate::sampling::{Sampler, Sequence};
 use crate::shape::SurfacePoint;
-use crate::transport::{PixelSample, direct_light, survival};
+use crate::transport::{PixelSample, direct_light};
 use crate::world::{Hit, Surroundings, World, leave};
 use in_scatter::Segment;
-
-/// Surfaces that both reflect and refract, along a camera path, at which both lobes are followed, before one
-/// is chosen by chance: the reflection in a glass ball then shows no noise, at up to four times the rays.
-const SPLITS: u32 = 2;
+use trace::{Branch, Track};
 
 /// Photons in the disc of an estimate that a gather ray makes, at the map's mean density. Small, as
 /// the mean over many rays smooths what each of them sees.
 const GATHER_PHOTONS: u32 = 6;
-
-/// A pixel's footprint on a surface grows with its slope as if the cosine were at least this: it is round.
-const MIN_COSINE: f32 = 0.25;
 
 /// What an estimate works with.
 struct Tools<'t, P> {
@@ -82,28 +77,6 @@ pub(crate) struct PhotonMapper<'a> {
     glances: bool,
 }
 
-/// The way of a camera path that was split at specular surfaces.
-#[derive(Clone, Copy)]
-struct Branch {
-    /// Tells ways apart: a leading one, then one bit for each split.
-    number: u64,
-    /// The share of what all ways carry that this one does.
-    share: f32,
-}
-
-impl Branch {
-    const WHOLE: Self = Self { number: 1, share: 1.0 };
-
-    /// The ways of two lobes.
-    fn split(self, lobes: [&BsdfSample; 2]) -> [Self; 2] {
-        let carried = lobes.map(|lobe| lobe.weight.mean() / lobe.radiance_scale);
-        [0, 1].map(|side| Self {
-            number: self.number << 1 | side as u64,
-            share: self.share * carried[side] / (carried[0] + carried[1]),
-        })
-    }
-}
-
 /// A surface that scatters light other than specularly, as a path meets it.
 struct Vertex<'a> {
     hit: &'a Hit,
@@ -115,6 +88,8 @@ struct Vertex<'a> {
     inside: Surroundings,
     /// The radius of a pixel there; nothing where gather rays land.
     footprint: f32,
+    /// Whether only photons of Dirac lamps count.
+    dirac_lamps: bool,
 }
 
 impl<'a> Vertex<'a> {
@@ -179,70 +154,6 @@ impl<'a> PhotonMapper<'a> {
         self.config.max_depth.is_none_or(|max| depth <= max)
     }
 
-    /// Follows a path from the camera over specular surfaces and shades the first that is not.
-    #[expect(clippy::too_many_arguments, reason = "the state of a path that splits in two")]
-    fn trace<P: Probe>(
-        &self,
-        mut way: Way,
-        mut throughput: Rgb,
-        mut depth: u32,
-        branch: Branch,
-        sample: &mut PixelSample,
-        tools: &mut Tools<'_, P>,
-        out: &mut Components,
-    ) {
-        tools.probe.begin(None, Rgb::WHITE);
-        while self.fits(depth) {
-            tools.probe.carry(throughput);
-            let hit = self.world.intersect(&way.ray);
-            if let Some(matter) = self.world.matter(way.inside) {
-                let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-                let open = [way.entered, hit.is_some_and(|hit| self.world.ends_medium(&hit))];
-                let segment = Segment { ray: &way.ray, end, matter, inside: way.inside, depth, open };
-                let samples =
-                    if sample.index.is_multiple_of(u64::from(self.stride)) { self.stride } else { 0 };
-                let (seen, through) = self.through_medium(&segment, samples, &mut sample.sampler, tools);
-                out.medium += throughput * seen;
-                throughput *= through;
-                tools.probe.carry(throughput);
-            }
-            let wo = -way.ray.direction;
-            if !self.glances {
-                let emitted = seen(self.world, hit.as_ref(), wo);
-                out.emitted += throughput * emitted;
-                tools.probe.light(LightPart::Emitted, emitted);
-            }
-            let Some(hit) = hit else { return };
-            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
-            if bsdf.is_null() {
-                way = way.pass(self.world, &hit, way.ray.direction);
-                continue;
-            }
-            tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: true });
-            if !bsdf.is_dirac() {
-                let across = self.world.camera().pixel_radius(way.before + hit.t);
-                let footprint = across / wo.dot(hit.point.ng).abs().max(MIN_COSINE).sqrt();
-                let vertex = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside, footprint };
-                self.shade(&vertex, throughput, branch, sample, tools, out);
-                return;
-            }
-            let lobes = bsdf.dirac_lobes(wo, Transport::Radiance);
-            if let ([Some(a), Some(b)], true) = (lobes, branch.number < 1 << SPLITS) {
-                for (lobe, branch) in [a, b].into_iter().zip(branch.split([&a, &b])) {
-                    let way = way.pass(self.world, &hit, lobe.wi);
-                    let depth = depth + segments_by(wo, lobe.wi);
-                    self.trace(way, throughput * lobe.weight, depth, branch, sample, tools, out);
-                }
-                return;
-            }
-            let Some((next, carried)) = scatter(&bsdf, wo, throughput, depth - 1, &mut sample.sampler) else {
-                return;
-            };
-            (way, throughput) = (way.pass(self.world, &hit, next), carried);
-            depth += segments_by(wo, next);
-        }
-    }
-
     /// Adds the light that a surface reflects towards the camera.
     fn shade<P: Probe>(
         &self,
@@ -254,7 +165,7 @@ impl<'a> PhotonMapper<'a> {
         out: &mut Components,
     ) {
         let show = self.config.show;
-        let shows_direct = matches!(show, Show::All | Show::Direct);
+        let shows_direct = self.config.shows_direct();
         let shows_global = matches!(show, Show::All | Show::Indirect | Show::Global);
         // What is seen beside the light that gather rays bring.
         let mut beside = Rgb::BLACK;
@@ -354,24 +265,34 @@ impl<'a> PhotonMapper<'a> {
         if map.is_empty() || bsdf.is_black() {
             return (Rgb::BLACK, Rgb::BLACK);
         }
-        let query = Query {
-            position: hit.point.position,
-            normal: vertex.facing_normal(),
-            max_photon_depth: self.config.max_depth.map(|max| max.saturating_sub(depth).min(65_535) as u16),
-        };
+        let normal = vertex.facing_normal();
         let has_direct = self.config.direct == DirectSource::Map && wanted.map == MapName::Global;
         let (mut direct, mut other) = (Rgb::BLACK, Rgb::BLACK);
         let bandwidth = bandwidth.at_least(vertex.footprint * self.maps.blur.factor(2));
         let Tools { neighbors, probe, .. } = tools;
-        let gathered =
-            gather_both(map, &query, self.config.kernel, bandwidth, neighbors, |photon, weights| {
+        let sides = if bsdf.transmits() { 2 } else { 1 };
+        for normal in [normal, -normal].into_iter().take(sides) {
+            let query = Query {
+                position: hit.point.position,
+                normal,
+                max_photon_depth: self
+                    .config
+                    .max_depth
+                    .map(|max| max.saturating_sub(depth).min(65_535) as u16),
+            };
+            let kernel = self.config.kernel;
+            let gathered = gather_both(map, &query, kernel, bandwidth, neighbors, |photon, weights| {
+                if vertex.dirac_lamps && !self.world.emitters()[photon.light as usize].is_dirac() {
+                    return;
+                }
                 let f = bsdf.eval(wo, photon.wi) * bsdf.density_factor(photon.wi);
                 let radiance = f * photon.power * weights.whole;
                 let is_direct = has_direct && photon.depth == 1 && !self.world.is_medium_light(photon.light);
                 *(if is_direct { &mut direct } else { &mut other }) += radiance;
                 probe.photon(photon, is_direct, radiance, f * photon.power * weights.half);
             });
-        probe.look_up(wanted, gathered);
+            probe.look_up(wanted, gathered);
+        }
         (direct, other)
     }
 }
@@ -386,34 +307,13 @@ impl Estimator for PhotonMapper<'_> {
         let mut out = Components::default();
         let way =
             Way { ray: sample.ray, inside: self.world.camera_surroundings(), entered: false, before: 0.0 };
-        self.trace(
-            way,
-            Rgb::WHITE,
-            1,
-            Branch::WHOLE,
-            sample,
-            &mut Tools { neighbors, profile: Profile::default(), probe },
-            &mut out,
-        );
+        let track = Track::new(way, self.glances);
+        let mut tools = Tools { neighbors, profile: Profile::default(), probe };
+        self.trace(track, sample, &mut tools, &mut out);
         if self.glances {
             probe.begin(None, Rgb::WHITE);
             out.emitted = glance(self.world, sample, self.config.max_depth, probe);
         }
         out
     }
-}
-
-/// Samples the next direction of a camera path, with roulette.
-fn scatter(
-    bsdf: &Bsdf,
-    wo: Vec3,
-    throughput: Rgb,
-    bounces: u32,
-    sampler: &mut Sampler,
-) -> Option<(Vec3, Rgb)> {
-    let (u, u_lobe, u_survive) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
-    let BsdfSample { wi, weight, radiance_scale, .. } = bsdf.sample(wo, u, u_lobe, Transport::Radiance)?;
-    let carried = throughput * weight;
-    let q = survival(throughput, carried / radiance_scale, bounces);
-    (u_survive < q).then(|| (wi, carried / q))
 }

@@ -243,7 +243,8 @@ impl Camera<'_> {
         walk.throughput = carried / q;
         if next.is_dirac() {
             walk.specular = true;
-            walk.trail.turn(1.0, 1.0);
+            walk.scattered -= u32::from(!bsdf.is_dirac());
+            walk.trail.turn_specular();
         } else {
             walk.trail.turn(next.pdf_solid_angle, bsdf.pdf(next.wi, wo));
         }
@@ -298,7 +299,7 @@ impl Estimator for Camera<'_> {
                 self.meet(&mut walk, radiance, lamp, &mut out, probe);
             }
             walk.length += hit.t;
-            let bsdf = world.bsdf_within(&hit, wo, &walk.inside);
+            let bsdf = world.meet(&hit, wo, &mut walk.inside, &mut walk.throughput, &mut sample.sampler);
             if bsdf.is_null() {
                 let direction = walk.ray.direction;
                 walk.leave(world, &hit, direction);

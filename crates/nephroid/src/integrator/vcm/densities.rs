@@ -122,6 +122,15 @@ impl Trail {
         }
     }
 
+    /// Goes on from the last vertex by a Dirac lobe: for what follows nothing can be connected there, whatever other lobes
+    /// it has.
+    pub fn turn_specular(&mut self) {
+        if let Some(last) = self.nodes.last_mut() {
+            last.kind = Kind::Specular;
+        }
+        self.turn(1.0, 1.0);
+    }
+
     /// Takes a direction from the last vertex with a density, and the opposite way that of the reverse.
     pub fn turn(&mut self, leaving: f32, reverse: f32) {
         self.leaving = leaving;

@@ -228,10 +228,11 @@ impl Walked<'_> {
     fn bounce(&mut self, lit: &Lit<'_>, bounce: &Bounce) -> bool {
         if bounce.dirac {
             let (place, position) = self.place(lit);
-            if !self.arrive(place, position, Kind::Specular) {
+            // Where light can be scattered otherwise it has landed just now.
+            if !lit.has_density() && !self.arrive(place, position, Kind::Specular) {
                 return false;
             }
-            self.trail.turn(1.0, 1.0);
+            self.trail.turn_specular();
         } else {
             self.trail.turn(bounce.pdf_solid_angle, lit.pdf_between(bounce.wi, lit.wo));
         }

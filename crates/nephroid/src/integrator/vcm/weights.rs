@@ -91,7 +91,12 @@ impl Whole<'_> {
     /// Vertex i from the lamp.
     pub fn kind(&self, i: usize) -> Kind {
         let light = self.light.len();
-        if i < light { self.light[i].kind } else { self.camera[self.len() - 1 - i].kind }
+        match self.light.get(i) {
+            // Where the light path ends for this path it scatters, though it may have gone on by a Dirac lobe.
+            Some(Node { kind: Kind::Specular, .. }) if i + 1 == light => Kind::Surface,
+            Some(node) => node.kind,
+            None => self.camera[self.len() - 1 - i].kind,
+        }
     }
 
     /// The densities F and B at vertex i.

@@ -3,10 +3,11 @@
 use std::f32::consts::PI;
 
 use super::in_scatter::Segment;
-use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, Way, scatter};
+use super::trace::scatter;
+use super::{DirectSource, Facing, PhotonMapper, Tools, Vertex, Way};
 use crate::color::Rgb;
 use crate::integrator::{LightPart, LookUp, MapName, Met, Probe};
-use crate::material::{Bsdf, Transport, segments_by};
+use crate::material::{Bsdf, LobeKind, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::photon_map::Bandwidth;
 use crate::sampling::Sampler;
@@ -138,17 +139,26 @@ impl PhotonMapper<'_> {
             let Some(hit) = hit.filter(|_| self.fits(depth + 1)) else { break };
             distance += hit.t;
             let wo = -way.ray.direction;
-            let bsdf = self.world.bsdf_within(&hit, wo, &way.inside);
+            let bsdf = self.world.meet(&hit, wo, &mut way.inside, &mut throughput, sampler);
             if bsdf.is_null() {
                 way = way.pass(self.world, &hit, way.ray.direction);
                 continue;
             }
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
-            if !bsdf.is_dirac() {
-                let there = Vertex { hit: &hit, bsdf: &bsdf, wo, depth, inside: way.inside, footprint: 0.0 };
-                let far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
+            let mut far = false;
+            if bsdf.has(LobeKind::Broad) {
+                let there = Vertex {
+                    hit: &hit,
+                    bsdf: &bsdf.part(LobeKind::Broad),
+                    wo,
+                    depth,
+                    inside: way.inside,
+                    footprint: 0.0,
+                    dirac_lamps: false,
+                };
+                far = distance >= 2.0 * self.global_radius || near == MAX_NEAR_SURFACES;
                 found += throughput * self.light_at(&there, far, sharp, throughput, sampler, tools);
-                if far {
+                if far && !bsdf.has_specular() {
                     break;
                 }
                 near += 1;
@@ -157,13 +167,18 @@ impl PhotonMapper<'_> {
             let Some((next, carried)) = scatter(&bsdf, wo, throughput, depth - 1, sampler) else {
                 break;
             };
-            if !bsdf.is_dirac() {
+            let specular = next.is_specular();
+            if far && !specular {
+                break;
+            }
+            if !specular {
                 // Where nothing is gathered there is no afterglow, and the ray brings all caustics.
                 let gathers = self.gather_rays.is_some();
-                sharp = if gathers { glossy_share(&bsdf, wo, next) } else { Rgb::WHITE };
+                sharp =
+                    if gathers { glossy_share(&bsdf.part(LobeKind::Broad), wo, next.wi) } else { Rgb::WHITE };
             }
-            (way, throughput) = (way.pass(self.world, &hit, next), carried);
-            depth += segments_by(wo, next);
+            (way, throughput) = (way.pass(self.world, &hit, next.wi), carried);
+            depth += segments_by(wo, next.wi);
         }
         found
     }
@@ -180,7 +195,7 @@ fn start_gather(
     let (u, u_lobe, u_technique) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
     let guide_share = match guide {
         None => 0.0,
-        Some(_) if bsdf.has_glossy_lobe() => 0.5,
+        Some(_) if bsdf.has_glossy_lobe() || bsdf.transmits() => 0.5,
         Some(_) => 1.0,
     };
     let (wi, pdf_of_guide) = match guide {
