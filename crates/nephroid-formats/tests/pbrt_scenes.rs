@@ -137,10 +137,10 @@ fn a_scene_is_what_it_would_be_by_hand() {
     });
     let emission = Some(expected.textures.constant(Rgb::new(2.0, 4.0, 6.0)));
     let geometry = Geometry::Mesh(mesh);
-    let shape = Shape::new("trianglemesh at line 9", geometry, material);
+    let shape = Shape::new("trianglemesh at line 10", geometry, material);
     expected.shapes.push(Shape { emission, flip_normals: true, ..shape });
     let kind = LightKind::Point { position: Vec3::Y, intensity: Rgb::new(3.0, 2.0, 1.0) };
-    expected.lights.push(Light { name: "point at line 10".into(), kind, medium: None });
+    expected.lights.push(Light { name: "point at line 11".into(), kind, medium: None });
     assert_eq!(file.scene, expected);
 }
 
@@ -192,7 +192,7 @@ fn windows_lenses_and_crops() {
 fn what_is_said_last_is_done_first() {
     let shape = |directives: &str| read(&format!("{directives} Shape \"disk\"")).scene.shapes[0].clone();
     let to_world = |directives: &str| shape(directives).to_world;
-    assert_eq!(to_world("Translate 1 2 3 Scale 2 2 2").point(Vec3::ONE), Vec3::new(3.0, 4.0, 3.0));
+    assert_eq!(to_world("Translate 1 2 3 Scale 2 2 2").point(Vec3::ONE), Vec3::new(3.0, 4.0, 5.0));
     assert_eq!(to_world("Rotate 90 0 0 1").point(Vec3::X), Vec3::Y);
     assert_eq!(to_world("Translate 1 0 0 Identity").point(Vec3::X), Vec3::X);
     let kept = "Translate 1 0 0 CoordinateSystem \"here\" Identity CoordSysTransform \"here\"";
@@ -259,6 +259,9 @@ fn diffuse_and_glass() {
     let Material::RoughDielectric { roughness, .. } = frosted else { panic!("{frosted:?}") };
     // The width of the distribution is the root of the roughness, unless the file says not to.
     assert_eq!(constant(&scene, roughness.alpha_u), Rgb::splat(0.5));
+    let (_, prism) = material("Material \"dielectric\" \"spectrum eta\" \"glass-F11\"");
+    let Material::Dispersive { dispersion, .. } = prism else { panic!("{prism:?}") };
+    assert!((dispersion.nominal_ior() - 1.7847).abs() < 1e-4);
     let (_, thin) = material("Material \"thindielectric\"");
     assert!(matches!(thin, Material::ThinDielectric { int_ior: 1.5, .. }), "{thin:?}");
     let (_, interface) = material("Material \"interface\"");
@@ -563,7 +566,7 @@ fn what_is_known_elsewhere_is_a_warning() {
     let file = read_whole("Camera \"perspective\" WorldBegin Shape \"curve\"", &lenient);
     assert_eq!(
         file.warnings[0].to_string(),
-        "s.pbrt:1:39: warning: shape \"curve\" cannot be rendered yet and is left out"
+        "s.pbrt:1:40: warning: shape \"curve\" cannot be rendered yet and is left out"
     );
 }
 

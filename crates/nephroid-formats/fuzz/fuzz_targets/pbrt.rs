@@ -17,7 +17,7 @@ static FILES: LazyLock<MemoryFiles> = LazyLock::new(|| {
         .with("m.ply", *include_bytes!("../seeds/ply/ascii.ply"))
         .with("i.png", *include_bytes!("../seeds/two_pixels.png"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
-        .with("p.pbrt", "MakeNamedMaterial \"p\" \"string type\" \"diffuse\" Shape \"sphere\"")
+        .with("p.pbrt", "Material \"diffuse\" Shape \"sphere\"")
 });
 
 fuzz_target!(|bytes: &[u8]| {

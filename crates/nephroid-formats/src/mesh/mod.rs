@@ -3,8 +3,8 @@
 mod obj;
 mod ply;
 
-pub(crate) use obj::replace_missing_normals;
 pub use obj::read_obj;
+pub(crate) use obj::replace_missing_normals;
 pub use ply::read_ply;
 
 use nephroid::math::Vec3;

@@ -7,8 +7,8 @@ use super::document::Element;
 use super::names::{EMITTERS, EMITTERS_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use crate::spectra::Role;
 use crate::diagnostic::Diagnostic;
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// Reads an `<emitter>` into the scene; what is wrong goes to the log.

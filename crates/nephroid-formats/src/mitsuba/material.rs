@@ -6,14 +6,14 @@ use nephroid::material::{Material, Metal};
 use nephroid::texture::Texture;
 
 use super::document::Element;
-use crate::spectra::{Known, metal, names};
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL, BSDFS_WRAPPING};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use crate::spectra::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
+use crate::spectra::Role;
+use crate::spectra::{Known, metal, names};
 
 /// Indices of refraction by name, at 589 nm and room temperature (Hecht, Optics, 4th edition).
 const IORS: [(&str, f32); 23] = [

@@ -10,10 +10,10 @@ use super::document::Element;
 use super::names::{SHAPES, SHAPES_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use crate::spectra::Role;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
 use crate::mesh::{MeshOptions, read_obj, read_ply};
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// Reads a `<shape>` into the scene; what is wrong goes to the log.

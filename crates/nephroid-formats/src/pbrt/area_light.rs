@@ -93,7 +93,12 @@ impl Reader<'_> {
                 // The first row is at v = 1.
                 let mut to_uv = Affine2::from_scale(Vec2::new(1.0, -1.0));
                 to_uv.translation = Vec2::Y;
-                Texture::Bitmap(Bitmap { image: copy, filter: BitmapFilter::Bilinear, wrap: Wrap::Clamp, to_uv })
+                Texture::Bitmap(Bitmap {
+                    image: copy,
+                    filter: BitmapFilter::Bilinear,
+                    wrap: Wrap::Clamp,
+                    to_uv,
+                })
             }
         };
         let texture = self.store_texture(&light.at, texture);

@@ -171,8 +171,7 @@ impl Reader<'_> {
             self.log.error(at, "nothing is left of the picture");
             return None;
         }
-        let crop =
-            Crop { x: x0 as u32, y: y0 as u32, width: (x1 - x0) as u32, height: (y1 - y0) as u32 };
+        let crop = Crop { x: x0 as u32, y: y0 as u32, width: (x1 - x0) as u32, height: (y1 - y0) as u32 };
         (crop != Crop { x: 0, y: 0, width, height }).then_some(crop)
     }
 
@@ -192,7 +191,8 @@ impl Reader<'_> {
                 c: parameters.float("C", 1.0 / 3.0) as f32,
             },
             "sinc" => {
-                self.log.warn(&parameters.at, "filter \"sinc\" cannot be had yet; \"mitchell\" stands for it");
+                self.log
+                    .warn(&parameters.at, "filter \"sinc\" cannot be had yet; \"mitchell\" stands for it");
                 parameters.finish_approximated();
                 self.filter = Filter::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 };
                 return;
@@ -221,7 +221,8 @@ impl Window {
     fn new(parameters: &Parameters, reader: &Reader) -> Self {
         let own = f64::from(reader.film.width) / f64::from(reader.film.height);
         let aspect = parameters.positive("frameaspectratio", own);
-        let (mut half_width, mut half_height) = if aspect > 1.0 { (aspect, 1.0) } else { (1.0, 1.0 / aspect) };
+        let (mut half_width, mut half_height) =
+            if aspect > 1.0 { (aspect, 1.0) } else { (1.0, 1.0 / aspect) };
         let mut center = [0.0; 2];
         if let Some(([x0, x1, y0, y1], at)) = parameters.four("screenwindow") {
             if x1 > x0 && y1 > y0 {

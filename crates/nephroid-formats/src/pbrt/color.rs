@@ -24,13 +24,7 @@ impl Reader<'_> {
     }
 
     /// A parameter that is one colour, or a default.
-    pub(super) fn color(
-        &self,
-        parameters: &Parameters,
-        name: &'static str,
-        default: Rgb,
-        role: Role,
-    ) -> Rgb {
+    pub(super) fn color(&self, parameters: &Parameters, name: &'static str, default: Rgb, role: Role) -> Rgb {
         self.optional_color(parameters, name, role).unwrap_or(default)
     }
 
@@ -45,7 +39,8 @@ impl Reader<'_> {
             (Kind::Blackbody, Values::Numbers(list)) => match list.as_slice() {
                 [kelvin, scale @ ..] if scale.len() <= 1 => {
                     if !(*kelvin > 0.0) {
-                        self.log.error(at, format!("a black body has a temperature above zero, not {kelvin}"));
+                        self.log
+                            .error(at, format!("a black body has a temperature above zero, not {kelvin}"));
                         return None;
                     }
                     if !scale.is_empty() {
@@ -120,7 +115,8 @@ impl Reader<'_> {
         if !name.contains('.') {
             let message = format!("no spectrum is called \"{}\"", shortened(name));
             let names = spectrum_names();
-            let mut message = Diagnostic::error(at, message).did_you_mean(name, names.iter().map(String::as_str));
+            let mut message =
+                Diagnostic::error(at, message).did_you_mean(name, names.iter().map(String::as_str));
             if message.hint.is_none() {
                 message = message.hint("a file's name ends as in \"name.spd\"");
             }

@@ -37,7 +37,12 @@ impl Reader<'_> {
     }
 
     /// `a`·`b`
-    pub(super) fn product(&mut self, a: Handle<Texture>, b: Handle<Texture>, at: &Location) -> Handle<Texture> {
+    pub(super) fn product(
+        &mut self,
+        a: Handle<Texture>,
+        b: Handle<Texture>,
+        at: &Location,
+    ) -> Handle<Texture> {
         match (self.constant(a), self.constant(b)) {
             (Some(x), Some(y)) => self.store_texture(at, Texture::Constant(x * y)),
             (Some(Rgb::WHITE), None) => b,

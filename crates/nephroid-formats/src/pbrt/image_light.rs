@@ -56,7 +56,8 @@ impl Reader<'_> {
             }
             return None;
         }
-        let of_one = if parameters.has("illuminance") { illuminance(&self.textures.images[image]) } else { 0.0 };
+        let of_one =
+            if parameters.has("illuminance") { illuminance(&self.textures.images[image]) } else { 0.0 };
         let scale = self.scale(parameters, "illuminance", of_one);
         Some(LightKind::Environment {
             image,

@@ -22,7 +22,8 @@ pub(super) fn inflated(path: &Path, bytes: Vec<u8>, at: &Location, log: &Log) ->
     };
     let mut out = Vec::new();
     // Some hundred bytes can stand for as many megabytes.
-    match flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(MAX_BYTES as u64 + 1).read_to_end(&mut out) {
+    match flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(MAX_BYTES as u64 + 1).read_to_end(&mut out)
+    {
         Ok(_) if out.len() > MAX_BYTES => fail(format!("it is larger than {} MiB", MAX_BYTES >> 20)),
         Ok(_) => Some(out),
         Err(error) => fail(error.to_string()),

@@ -6,9 +6,9 @@ use nephroid::material::{Material, Metal};
 use nephroid::math::{Affine2, Vec2};
 use nephroid::texture::{Bitmap, BitmapFilter, Texture, Wrap};
 
-use super::named::metal_index;
+use super::named::{glass_dispersion, metal_index};
 use super::names::{MATERIALS, MATERIALS_APPROXIMATED, MATERIALS_OLD};
-use super::parameter::Kind;
+use super::parameter::{Kind, Values};
 use super::parameters::Parameters;
 use super::reader::Reader;
 use super::state::Current;
@@ -29,6 +29,7 @@ impl Reader<'_> {
             Material::Blend { first, second, .. } => 1 + self.size_of(*first) + self.size_of(*second),
             Material::TwoSided { front: inside, .. }
             | Material::Mask { inside, .. }
+            | Material::Dispersive { inside, .. }
             | Material::NormalMap { inside, .. }
             | Material::BumpMap { inside, .. } => 1 + self.size_of(*inside),
             _ => 1,
@@ -116,6 +117,7 @@ impl Reader<'_> {
             }
         };
         let handle = material.map(|material| self.store_sides(at, material, two_sided));
+        let handle = handle.map(|handle| self.with_dispersion(parameters, handle));
         let handle = self.tilted(parameters, handle);
         if MATERIALS_APPROXIMATED.contains(&parameters.kind.as_str()) {
             parameters.finish_approximated();
@@ -127,7 +129,12 @@ impl Reader<'_> {
     }
 
     /// A material alone, or on both sides, as pbrt has all that lets no light through.
-    pub(super) fn store_sides(&mut self, at: &Location, material: Material, two_sided: bool) -> Handle<Material> {
+    pub(super) fn store_sides(
+        &mut self,
+        at: &Location,
+        material: Material,
+        two_sided: bool,
+    ) -> Handle<Material> {
         let side = self.store_material(at, material);
         if !two_sided {
             return side;
@@ -155,7 +162,9 @@ impl Reader<'_> {
             to_uv.translation = Vec2::Y;
             let bitmap = Bitmap { image, filter: BitmapFilter::Bilinear, wrap: Wrap::Repeat, to_uv };
             let normals = self.store_texture(map_at, Texture::Bitmap(bitmap));
-            return Some(self.store_material(at, Material::NormalMap { normals, scale: 1.0, inside: inside? }));
+            return Some(
+                self.store_material(at, Material::NormalMap { normals, scale: 1.0, inside: inside? }),
+            );
         }
         inside
     }
@@ -186,15 +195,35 @@ impl Reader<'_> {
     pub(super) fn ior(&mut self, parameters: &Parameters, name: &'static str, default: f32) -> f32 {
         let Some(found) = parameters.any(name) else { return default };
         let value = self.color_of(parameters, found, Role::Index).map_or(default, |index| index.g);
-        if matches!(found.kind, Kind::Spectrum) && name == "eta" && parameters.kind == "dielectric" {
-            let message = "glass cannot take light apart in this format yet: it has one index of refraction";
-            self.log.warn(&found.value_at, message);
-        }
         if value > 0.0 {
             return value;
         }
         self.log.error(&found.value_at, format!("\"{name}\" must be above zero, not {value}"));
         default
+    }
+
+    /// Glass by its name, which takes light apart.
+    fn with_dispersion(&mut self, parameters: &Parameters, glass: Handle<Material>) -> Handle<Material> {
+        let Some(eta) = parameters.any("eta").filter(|_| parameters.kind == "dielectric") else {
+            return glass;
+        };
+        if eta.kind != Kind::Spectrum {
+            return glass;
+        }
+        let dispersion = match &eta.values {
+            Values::Texts(texts) => texts.first().and_then(|name| glass_dispersion(name)),
+            _ => None,
+        };
+        match (dispersion, &self.materials[glass]) {
+            (Some(dispersion), Material::Dielectric { .. } | Material::RoughDielectric { .. }) => {
+                self.store_material(&parameters.at, Material::Dispersive { dispersion, inside: glass })
+            }
+            _ => {
+                let message = "only glass by its name takes light apart: this has one index of refraction";
+                self.log.warn(&eta.value_at, message);
+                glass
+            }
+        }
     }
 
     fn dielectric(&mut self, parameters: &Parameters) -> Option<Material> {
@@ -302,7 +331,8 @@ impl Reader<'_> {
     fn coat_ior(&mut self, parameters: &Parameters, name: &'static str) -> f32 {
         let ior = self.ior(parameters, name, 1.5);
         if ior < 1.0 {
-            let message = format!("a coat with an index of refraction of {ior}, below 1, cannot be had: 1 it is");
+            let message =
+                format!("a coat with an index of refraction of {ior}, below 1, cannot be had: 1 it is");
             self.log.warn(&parameters.at, message);
         }
         ior.max(1.0)
@@ -342,9 +372,7 @@ impl Reader<'_> {
             _ => weight,
         });
         let pair = match parameters.texts("materials") {
-            Some(([first, second], at)) => {
-                Some([first, second].map(|name| self.material_of_name(name, at)))
-            }
+            Some(([first, second], at)) => Some([first, second].map(|name| self.material_of_name(name, at))),
             Some((_, at)) => {
                 self.log.error(at, "\"materials\" takes two names");
                 None

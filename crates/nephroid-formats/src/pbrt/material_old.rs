@@ -12,7 +12,8 @@ use crate::spectra::Role;
 
 impl Reader<'_> {
     pub(super) fn stands_for(&self, parameters: &Parameters, nearest: &str) {
-        let message = format!("material \"{}\" cannot be rendered yet; {nearest} stands for it", parameters.kind);
+        let message =
+            format!("material \"{}\" cannot be rendered yet; {nearest} stands for it", parameters.kind);
         self.log.warn(&parameters.at, message);
     }
 
@@ -50,13 +51,15 @@ impl Reader<'_> {
     pub(super) fn old_material(&mut self, parameters: &Parameters) -> Option<Handle<Material>> {
         let (material, nearest, two_sided) = match parameters.kind.as_str() {
             "matte" => (self.old_diffuse(parameters), "diffuse", true),
-            "plastic" | "substrate" | "uber" | "disney" => (self.old_plastic(parameters), "coateddiffuse", true),
+            "plastic" | "substrate" | "uber" | "disney" => {
+                (self.old_plastic(parameters), "coateddiffuse", true)
+            }
             "metal" => (self.old_metal(parameters), "conductor", true),
             "mirror" => {
                 let reflectance = self.albedo(parameters, "Kr", 0.9);
                 let metal = Metal::PerfectMirror;
-                let mirror =
-                    reflectance.map(|specular_reflectance| Material::Conductor { metal, specular_reflectance });
+                let mirror = reflectance
+                    .map(|specular_reflectance| Material::Conductor { metal, specular_reflectance });
                 (mirror, "conductor", true)
             }
             "glass" => (self.old_glass(parameters), "dielectric", false),
@@ -84,8 +87,7 @@ impl Reader<'_> {
             Some(_) => self.ior(parameters, "eta", 1.5).max(1.0),
             None => 1.5,
         };
-        let roughness =
-            self.roughness(parameters, ["uroughness", "vroughness", "roughness"], default);
+        let roughness = self.roughness(parameters, ["uroughness", "vroughness", "roughness"], default);
         let specular_reflectance = self.white(parameters);
         let diffuse_reflectance = self.albedo(parameters, base, 0.25)?;
         Some(Material::Plastic {
@@ -114,7 +116,8 @@ impl Reader<'_> {
     fn old_glass(&mut self, parameters: &Parameters) -> Option<Material> {
         let name = if parameters.has("index") { "index" } else { "eta" };
         let int_ior = self.ior(parameters, name, 1.5);
-        let (reflected, transmitted) = (self.albedo(parameters, "Kr", 1.0), self.albedo(parameters, "Kt", 1.0));
+        let (reflected, transmitted) =
+            (self.albedo(parameters, "Kr", 1.0), self.albedo(parameters, "Kt", 1.0));
         Some(Material::Dielectric {
             int_ior,
             ext_ior: 1.0,

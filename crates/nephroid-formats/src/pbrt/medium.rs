@@ -83,7 +83,8 @@ impl Reader<'_> {
         let scale = parameters.not_negative("scale", 1.0) as f32;
         let coefficients = self.scattering(parameters);
         let emission = self.glow(parameters);
-        let density = if kind == "uniformgrid" { self.density(name, parameters).map(Some) } else { Some(None) };
+        let density =
+            if kind == "uniformgrid" { self.density(name, parameters).map(Some) } else { Some(None) };
         parameters.finish();
         let [sigma_s, sigma_a] = coefficients?;
         let sigma_t = (sigma_s + sigma_a) * scale;
@@ -150,7 +151,8 @@ impl Reader<'_> {
             None => 1.0,
         };
         let Some(found) = parameters.any("Le") else { return Rgb::BLACK };
-        if matches!(&found.values, super::parameter::Values::Numbers(list) if list.iter().all(|v| *v == 0.0)) {
+        if matches!(&found.values, super::parameter::Values::Numbers(list) if list.iter().all(|v| *v == 0.0))
+        {
             return Rgb::BLACK;
         }
         let light = self.color_of(parameters, found, Role::Emission).unwrap_or(Rgb::BLACK) * factor;

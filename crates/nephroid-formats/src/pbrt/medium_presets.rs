@@ -30,7 +30,10 @@ pub(super) const OTHERS: &[&str] = &[
 
 /// Scattering and absorption.
 pub(super) fn preset(name: &str) -> Option<[[f32; 3]; 2]> {
-    PRESETS.iter().find(|(known, ..)| *known == name).map(|(_, scattering, absorption)| [*scattering, *absorption])
+    PRESETS
+        .iter()
+        .find(|(known, ..)| *known == name)
+        .map(|(_, scattering, absorption)| [*scattering, *absorption])
 }
 
 /// Every name, for proposals.

@@ -88,7 +88,12 @@ impl Reader<'_> {
     }
 
     /// Whether all vertices exist; else a message.
-    pub(super) fn indices_fit(&self, parameters: &Parameters, indices: &[u32], vertices: usize) -> Option<()> {
+    pub(super) fn indices_fit(
+        &self,
+        parameters: &Parameters,
+        indices: &[u32],
+        vertices: usize,
+    ) -> Option<()> {
         let Some(wrong) = indices.iter().find(|index| **index as usize >= vertices) else { return Some(()) };
         let at = parameters.any("indices").map_or(&parameters.at, |found| &found.value_at);
         self.log.error(at, format!("vertex {wrong} does not exist: there are {vertices}"));

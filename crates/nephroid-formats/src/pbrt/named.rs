@@ -1,23 +1,24 @@
 //! Spectra that pbrt knows by name.
 
 use nephroid::color::Rgb;
+use nephroid::material::Dispersion;
 
 use super::color_space::xyz_of;
 use crate::spectra::{Known, metal, xyz_to_rgb};
 
-/// Indices of refraction at 587.6 nm, from the data sheets of Schott AG.
-const GLASSES: [(&str, f32); 10] = [
-    ("glass-BK7", 1.5168),
-    ("glass-BAF10", 1.6700),
-    ("glass-FK51A", 1.4866),
-    ("glass-LASF9", 1.8503),
+/// Indices of refraction at 587.6 nm and Abbe numbers, from the data sheets of Schott AG.
+const GLASSES: [(&str, f32, f32); 10] = [
+    ("glass-BK7", 1.5168, 64.17),
+    ("glass-BAF10", 1.6700, 47.11),
+    ("glass-FK51A", 1.4866, 84.47),
+    ("glass-LASF9", 1.8503, 32.17),
     // SF5, SF10 and SF11 by both spellings that are in use.
-    ("glass-SF5", 1.6727),
-    ("glass-SF10", 1.7283),
-    ("glass-SF11", 1.7847),
-    ("glass-F5", 1.6727),
-    ("glass-F10", 1.7283),
-    ("glass-F11", 1.7847),
+    ("glass-SF5", 1.6727, 32.21),
+    ("glass-SF10", 1.7283, 28.41),
+    ("glass-SF11", 1.7847, 25.76),
+    ("glass-F5", 1.6727, 32.21),
+    ("glass-F10", 1.7283, 28.41),
+    ("glass-F11", 1.7847, 25.76),
 ];
 
 /// Chromaticities of standard illuminants for the 2° observer (CIE 015:2018; D60 as SMPTE ST 2065-1 has it).
@@ -66,9 +67,15 @@ pub(super) fn metal_index(name: &str) -> Option<[Rgb; 2]> {
     }
 }
 
+/// How a glass of that name takes light apart.
+pub(super) fn glass_dispersion(name: &str) -> Option<Dispersion> {
+    let (_, n_d, abbe) = GLASSES.iter().find(|(known, ..)| *known == name)?;
+    Some(Dispersion::from_abbe(*n_d, *abbe))
+}
+
 /// The spectrum of a name.
 pub(super) fn named_spectrum(name: &str) -> Option<NamedSpectrum> {
-    if let Some((_, value)) = GLASSES.iter().find(|(known, _)| *known == name) {
+    if let Some((_, value, _)) = GLASSES.iter().find(|(known, ..)| *known == name) {
         return Some(NamedSpectrum::Index(Rgb::splat(*value)));
     }
     if let Some((_, xy)) = ILLUMINANTS.iter().find(|(known, _)| *known == name) {
@@ -87,7 +94,7 @@ pub(super) fn named_spectrum(name: &str) -> Option<NamedSpectrum> {
 /// Every name, for proposals.
 pub(super) fn spectrum_names() -> Vec<String> {
     let metals = METALS.iter().flat_map(|m| [format!("metal-{m}-eta"), format!("metal-{m}-k")]);
-    let others = GLASSES.iter().map(|(name, _)| *name).chain(ILLUMINANTS.iter().map(|(name, _)| *name));
+    let others = GLASSES.iter().map(|(name, ..)| *name).chain(ILLUMINANTS.iter().map(|(name, _)| *name));
     metals.chain(others.map(str::to_owned)).collect()
 }
 
@@ -99,7 +106,11 @@ mod tests {
     fn names() {
         assert_eq!(named_spectrum("glass-BK7"), Some(NamedSpectrum::Index(Rgb::splat(1.5168))));
         assert!(spectrum_names().iter().all(|name| named_spectrum(name).is_some()));
-        assert!(["metal-Au", "metal-Xx-eta", "metal-Au-q", "glass", ""].iter().all(|n| named_spectrum(n).is_none()));
+        assert!(
+            ["metal-Au", "metal-Xx-eta", "metal-Au-q", "glass", ""]
+                .iter()
+                .all(|n| named_spectrum(n).is_none())
+        );
         let Some(NamedSpectrum::Light(white)) = named_spectrum("stdillum-D65") else { panic!("no light") };
         assert!((white - Rgb::WHITE).map(f32::abs).max_channel() < 1e-3, "{white:?}");
     }

@@ -122,7 +122,9 @@ pub(super) fn read_parameters(tokens: &mut Tokens, color_space: ColorSpace, log:
 fn skip_values(tokens: &mut Tokens, log: &Log) {
     while let Some(token) = tokens.peek(log) {
         let is_value = match token.kind {
-            TokenKind::Word => tokens.text(&token).starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)),
+            TokenKind::Word => {
+                tokens.text(&token).starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+            }
             TokenKind::Close => true,
             TokenKind::Open | TokenKind::Quoted => false,
         };
@@ -171,6 +173,7 @@ fn raw_values(tokens: &mut Tokens, parameter: &Location, log: &Log) -> Option<(V
         }
     }
     let mut list = Vec::new();
+    let mut depth = 1;
     loop {
         let Some(token) = tokens.peek(log) else {
             log.error(&tokens.location(&first), "the list has no end; close it with ]");
@@ -179,12 +182,15 @@ fn raw_values(tokens: &mut Tokens, parameter: &Location, log: &Log) -> Option<(V
         match token.kind {
             TokenKind::Close => {
                 tokens.next(log);
-                break;
+                depth -= 1;
+                if depth == 0 {
+                    break;
+                }
             }
             TokenKind::Open => {
                 tokens.next(log);
                 log.error(&tokens.location(&token), "a list in a list");
-                return None;
+                depth += 1;
             }
             TokenKind::Word if is_directive(tokens.text(&token)) => {
                 log.error(&tokens.location(&first), "the list has no end; close it with ]");
@@ -204,7 +210,8 @@ fn raw_values(tokens: &mut Tokens, parameter: &Location, log: &Log) -> Option<(V
 
 /// Whether a word without quotes can only be a directive.
 fn is_directive(word: &str) -> bool {
-    word.starts_with(|c: char| c.is_ascii_uppercase()) && !matches!(word, "NaN" | "Inf" | "Infinity" | "INF" | "NAN")
+    word.starts_with(|c: char| c.is_ascii_uppercase())
+        && !matches!(word, "NaN" | "Inf" | "Infinity" | "INF" | "NAN")
 }
 
 /// The values of a list that must be of a kind.
@@ -243,13 +250,18 @@ fn typed(
     }
     let number = |token: &Token| {
         let found = if token.kind == TokenKind::Quoted {
-            Err(format!("\"{name}\" is a {}, and \"{}\" a string", kind.name(), shortened(tokens.text(token))))
+            Err(format!(
+                "\"{name}\" is a {}, and \"{}\" a string",
+                kind.name(),
+                shortened(tokens.text(token))
+            ))
         } else {
             float(tokens.text(token))
         };
         match found {
             Ok(value) if kind == Kind::Integer && !is_integer(value) => {
-                let message = format!("\"{}\" is not a whole number of 32 bits", shortened(tokens.text(token)));
+                let message =
+                    format!("\"{}\" is not a whole number of 32 bits", shortened(tokens.text(token)));
                 log.error(&tokens.location(token), message);
                 None
             }

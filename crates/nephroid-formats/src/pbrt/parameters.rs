@@ -92,11 +92,7 @@ impl<'t> Parameters<'t> {
     }
 
     /// So many numbers.
-    fn exactly<const N: usize>(
-        &self,
-        name: &'static str,
-        kinds: &[Kind],
-    ) -> Option<([f64; N], &Location)> {
+    fn exactly<const N: usize>(&self, name: &'static str, kinds: &[Kind]) -> Option<([f64; N], &Location)> {
         let (numbers, at) = self.numbers(name, kinds)?;
         match numbers.try_into() {
             Ok(array) => Some((array, at)),
@@ -146,7 +142,9 @@ impl<'t> Parameters<'t> {
 
     /// A whole number in a range; anything else is an error.
     pub(super) fn integer(&self, name: &'static str, default: u32, range: RangeInclusive<u32>) -> u32 {
-        let Some(([value], at)) = self.exactly::<1>(name, &[Kind::Integer, Kind::Float]) else { return default };
+        let Some(([value], at)) = self.exactly::<1>(name, &[Kind::Integer, Kind::Float]) else {
+            return default;
+        };
         let (least, most) = (f64::from(*range.start()), f64::from(*range.end()));
         if value.fract() == 0.0 && (least..=most).contains(&value) {
             return value as u32;
@@ -248,8 +246,8 @@ impl<'t> Parameters<'t> {
         let asked = self.asked.borrow();
         let (name, kind) = (shortened(&parameter.name), shortened(&self.kind));
         let message = format!("the {} \"{kind}\" has no parameter \"{name}\"", self.noun);
-        let mut message =
-            Diagnostic::error(&parameter.location, message).did_you_mean(&parameter.name, asked.iter().copied());
+        let mut message = Diagnostic::error(&parameter.location, message)
+            .did_you_mean(&parameter.name, asked.iter().copied());
         if message.hint.is_none() && !asked.is_empty() {
             message = message.hint(format!("it has {}", asked.join(", ")));
         }

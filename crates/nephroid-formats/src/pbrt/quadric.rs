@@ -35,7 +35,8 @@ impl Quadric {
         let kind = match parameters.kind.as_str() {
             "sphere" => {
                 let (a, b) = (parameters.float("zmin", -radius), parameters.float("zmax", radius));
-                let polar = |z: f64| if z >= radius { PI } else { libm::acos((-z / radius).clamp(-1.0, 1.0)) };
+                let polar =
+                    |z: f64| if z >= radius { PI } else { libm::acos((-z / radius).clamp(-1.0, 1.0)) };
                 Kind::Sphere { radius, from: polar(a.min(b)), to: polar(a.max(b)) }
             }
             "cylinder" => {
@@ -72,8 +73,7 @@ impl Quadric {
             }
             Kind::Cylinder { radius, from, to } => {
                 let end = |z: f64| Vec3::new(0.0, 0.0, z as f32);
-                let geometry =
-                    Geometry::Cylinder { p0: end(from), p1: end(to), radius: radius as f32 };
+                let geometry = Geometry::Cylinder { p0: end(from), p1: end(to), radius: radius as f32 };
                 (geometry, Transform::IDENTITY)
             }
             Kind::Disk { height, outer, inner } if inner == 0.0 => {
@@ -104,13 +104,28 @@ impl Quadric {
             }
         }
         let place = |i: u32, j: u32| j * (columns + 1) + i;
+        let [point_first, point_last] = self.ends_in_a_point();
         for j in 0..rows {
             for i in 0..columns {
                 let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
+                if j > 0 || !point_first {
+                    mesh.triangles.push([a, b, c]);
+                }
+                if j + 1 < rows || !point_last {
+                    mesh.triangles.push([a, c, d]);
+                }
             }
         }
         mesh
+    }
+
+    /// Whether all of v = 0, and of v = 1, is one point.
+    fn ends_in_a_point(&self) -> [bool; 2] {
+        match self.kind {
+            Kind::Sphere { from, to, .. } => [from <= 0.0, to >= PI],
+            Kind::Cylinder { .. } => [false; 2],
+            Kind::Disk { inner, .. } => [false, inner == 0.0],
+        }
     }
 
     fn point(&self, u: f64, v: f64) -> (DVec3, DVec3) {

@@ -25,8 +25,7 @@ impl Reader<'_> {
         let at = parameters.at.clone();
         let mut alpha = |name: &'static str| {
             let name = if parameters.has(name) { name } else { both };
-            let texture =
-                self.texture_or_color(parameters, name, Rgb::splat(default), Role::Index)?;
+            let texture = self.texture_or_color(parameters, name, Rgb::splat(default), Role::Index)?;
             Some(self.alpha(texture, remap, &at))
         };
         let (u, v) = (alpha(along_u), alpha(along_v));
@@ -37,7 +36,8 @@ impl Reader<'_> {
         if smooth(alpha_u) && smooth(alpha_v) {
             return None;
         }
-        let alpha_v = if self.constant(alpha_u).is_some() && self.constant(alpha_u) == self.constant(alpha_v) {
+        let alpha_v = if self.constant(alpha_u).is_some() && self.constant(alpha_u) == self.constant(alpha_v)
+        {
             alpha_u
         } else {
             alpha_v

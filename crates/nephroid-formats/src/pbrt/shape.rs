@@ -78,7 +78,9 @@ impl Reader<'_> {
         let geometry = form?.geometry;
         let emission = self.emission(parameters, &geometry, &to_world, material, alpha.is_some());
         let material = match alpha {
-            Some(alpha) if emission.is_none() => material.map(|inside| self.with_mask(parameters, inside, alpha)),
+            Some(alpha) if emission.is_none() => {
+                material.map(|inside| self.with_mask(parameters, inside, alpha))
+            }
             _ => material,
         };
         Some(Shape {

@@ -26,7 +26,8 @@ impl Reader<'_> {
             "spectrum" | "color" => true,
             "float" => false,
             _ => {
-                let message = format!("a texture is of \"float\" or \"spectrum\", not of \"{}\"", shortened(values));
+                let message =
+                    format!("a texture is of \"float\" or \"spectrum\", not of \"{}\"", shortened(values));
                 self.log.error(values_at, message);
                 return;
             }
@@ -103,7 +104,8 @@ impl Reader<'_> {
         let mean = match pair {
             Some(names) => {
                 let [a, b] = names.map(|name| {
-                    let default = Rgb::splat(if matches!(name, "inside" | "tex2" | "v11") { 1.0 } else { 0.0 });
+                    let default =
+                        Rgb::splat(if matches!(name, "inside" | "tex2" | "v11") { 1.0 } else { 0.0 });
                     let texture = self.texture_or_color(parameters, name, default, role);
                     texture.map_or(default, |texture| self.textures.mean(texture))
                 });
@@ -112,7 +114,8 @@ impl Reader<'_> {
             None => Rgb::splat(0.5),
         };
         let kind = &parameters.kind;
-        let message = format!("texture \"{kind}\" cannot be rendered yet; it becomes one colour, about its mean");
+        let message =
+            format!("texture \"{kind}\" cannot be rendered yet; it becomes one colour, about its mean");
         self.log.warn(&parameters.at, message);
         parameters.finish_approximated();
         Texture::Constant(mean)
@@ -161,7 +164,9 @@ impl Reader<'_> {
             }
             _ => {
                 let message = format!("unknown encoding \"{}\"", shortened(text));
-                self.log.push(Diagnostic::error(at, message).hint("it can be sRGB, linear or gamma and a number"));
+                self.log.push(
+                    Diagnostic::error(at, message).hint("it can be sRGB, linear or gamma and a number"),
+                );
                 by_name
             }
         }

@@ -94,7 +94,8 @@ impl Tokens {
                     log.push(Diagnostic::error(&at, "the string has no end").hint("close it with \""));
                 }
                 _ => {
-                    let is_word = |b: &u8| !b.is_ascii_whitespace() && !matches!(b, b'"' | b'[' | b']' | b'#');
+                    let is_word =
+                        |b: &u8| !b.is_ascii_whitespace() && !matches!(b, b'"' | b'[' | b']' | b'#');
                     let start = self.at;
                     self.at += bytes[start..].iter().take_while(|b| is_word(b)).count();
                     return Some(Token { kind: TokenKind::Word, range: start..self.at });

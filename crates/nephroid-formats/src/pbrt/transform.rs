@@ -37,7 +37,12 @@ impl Reader<'_> {
             }
             "LookAt" => {
                 let v: [f64; 9] = self.follow(directive, at, tokens)?;
-                self.look_at(DVec3::from_slice(&v), DVec3::from_slice(&v[3..]), DVec3::from_slice(&v[6..]), at)
+                self.look_at(
+                    DVec3::from_slice(&v),
+                    DVec3::from_slice(&v[3..]),
+                    DVec3::from_slice(&v[6..]),
+                    at,
+                )
             }
             "Transform" | "ConcatTransform" => self.matrix(self.follow(directive, at, tokens)?, at),
             _ => Some(Transform::IDENTITY),

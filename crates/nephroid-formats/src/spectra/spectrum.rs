@@ -3,8 +3,8 @@
 use nephroid::color::Rgb;
 
 use super::cie1931::{D65, FIRST_NM, OBSERVER, STEP_NM};
-use crate::number::{float, floats, words};
 use crate::log::shortened;
+use crate::number::{float, floats, words};
 
 /// Width of the steps in which a spectrum is integrated.
 const INTEGRATION_STEP_NM: f64 = 0.5;
