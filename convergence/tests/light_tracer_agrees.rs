@@ -11,10 +11,10 @@ use nephroid::handle::Handle;
 use nephroid::integrator::{Method, PhotonMapperConfig};
 use nephroid::light::{EnvironmentMapping, LightKind};
 use nephroid::material::Material;
-use nephroid::math::{DVec3, Transform, Vec2, Vec3};
+use nephroid::math::{Affine2, DVec3, Transform, Vec2, Vec3};
 use nephroid::medium::{Coefficient, Phase};
 use nephroid::shape::{Geometry, Mesh};
-use nephroid::texture::Image;
+use nephroid::texture::{Bitmap, BitmapFilter, Image, Texture, Wrap};
 use nephroid_convergence::{
     Builder, between, blocks, boxed, cloud_over_floor, every_method_but, facing, foggy_niche, lantern_in_fog,
     three_media, volpath,
@@ -27,7 +27,7 @@ const BLOCK: usize = 8;
 const PARTS: usize = 10 * 3;
 
 /// More than the pairs of pictures.
-const PAIRS: usize = 24;
+const PAIRS: usize = 32;
 
 /// The methods that do not blur and know of media, but for path tracing, by which they are judged.
 fn methods(max_depth: Option<u32>) -> Vec<Method> {
@@ -159,6 +159,30 @@ fn with_interpolated_normals() {
         b.light(LightKind::Constant { radiance: Rgb::splat(0.3) });
         agree(&format!("smooth, phong {phong}"), b, None);
     }
+}
+
+/// Hills on a floor, and a ball whose normals an image tilts.
+#[test]
+fn on_surfaces_that_images_bend() {
+    let mut b = Builder::seen_from(Vec3::new(0.0, 1.0, 4.0), Vec3::ZERO, 36.0, SIDE);
+    let mut bitmap = |pixels: Vec<Rgb>, times: f32| {
+        let image = b.scene.textures.images.push(Image { width: 4, height: 4, pixels }.into());
+        let to_uv = Affine2::from_scale(Vec2::splat(times));
+        let (filter, wrap) = (BitmapFilter::Bilinear, Wrap::Repeat);
+        b.scene.textures.push(Texture::Bitmap(Bitmap { image, filter, wrap, to_uv }))
+    };
+    let hills = (0..16).map(|i| Rgb::splat((i * 7 % 16) as f32 / 15.0)).collect();
+    let tilts = |i: i32| Rgb::new((i * 5 % 16) as f32 / 15.0, (i * 11 % 16) as f32 / 15.0, 1.0);
+    let (heights, normals) = (bitmap(hills, 2.0), bitmap((0..16).map(tilts).collect(), 1.0));
+    let (inside, white) = (b.diffuse(0.8), b.diffuse(0.9));
+    let floor = b.scene.materials.push(Material::BumpMap { heights, scale: 0.15, inside });
+    let ball = b.scene.materials.push(Material::NormalMap { normals, scale: 0.6, inside: white });
+    b.shape(Geometry::Rectangle, facing(DVec3::NEG_Y, 1.5, DVec3::X, -90.0), floor);
+    b.sphere(Vec3::new(-0.6, -0.3, 0.0), 0.7, ball);
+    b.mesh(smooth_ball(Vec3::new(0.8, -0.3, 0.2), 0.6), white);
+    b.point_light(Vec3::new(0.3, 2.0, 1.5), 6.0);
+    b.light(LightKind::Constant { radiance: Rgb::splat(0.3) });
+    agree("bent", b, None);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 pub mod diagnostic;
 pub mod film_file;
+pub mod ies;
 pub mod image;
 mod integrator_request;
 mod log;

@@ -213,7 +213,7 @@ s.xml:2:22: error: <float> lacks the attribute "value""#,
     check(
         r#"<bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="text.png"/><string name="wrap_mode" value="repaet"/></texture></bsdf>"#,
         r#"s.xml:2:138: error: unknown wrap_mode "repaet"; one of repeat, mirror, clamp
-s.xml:2:95: error: "text.png" is of no format that is known here; images can be OpenEXR, PNG, JPEG or Radiance HDR files"#,
+s.xml:2:95: error: "text.png" is of no format that is known here; images can be OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP or PFM files"#,
     );
 }
 
@@ -466,7 +466,7 @@ fn broken_files() {
     );
     check(
         r#"<emitter type="envmap"><string name="filename" value="text.png"/></emitter>"#,
-        r#"s.xml:2:55: error: "text.png" is of no format that is known here; images can be OpenEXR, PNG, JPEG or Radiance HDR files"#,
+        r#"s.xml:2:55: error: "text.png" is of no format that is known here; images can be OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP or PFM files"#,
     );
     check(
         r#"<emitter type="envmap"><string name="filename" value="giant.png"/></emitter>"#,

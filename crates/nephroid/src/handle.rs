@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Index;
+use std::sync::Arc;
 
 /// The place of a `T` in an [`Arena`]. A texture's handle cannot index materials.
 pub struct Handle<T> {
@@ -41,25 +42,19 @@ impl<T> fmt::Debug for Handle<T> {
 }
 
 /// A growing list that hands out a [`Handle`] for each item and never takes one back.
+/// Copies share their items until one of them gets another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arena<T> {
-    items: Vec<T>,
+    items: Arc<Vec<T>>,
 }
 
 impl<T> Default for Arena<T> {
     fn default() -> Self {
-        Self { items: Vec::new() }
+        Self { items: Arc::default() }
     }
 }
 
 impl<T> Arena<T> {
-    /// Stores an item.
-    pub fn push(&mut self, item: T) -> Handle<T> {
-        let index = u32::try_from(self.items.len()).expect("fewer than 2^32 items of one kind");
-        self.items.push(item);
-        Handle { index, kind: PhantomData }
-    }
-
     /// The items in order.
     pub fn iter(&self) -> std::slice::Iter<'_, T> {
         self.items.iter()
@@ -67,12 +62,18 @@ impl<T> Arena<T> {
 
     /// Handles and items in order.
     pub fn iter_handles(&self) -> impl Iterator<Item = (Handle<T>, &T)> {
-        (0u32..).zip(&self.items).map(|(index, item)| (Handle { index, kind: PhantomData }, item))
+        (0u32..).zip(self.items.iter()).map(|(index, item)| (Handle { index, kind: PhantomData }, item))
     }
 
     /// How many.
     pub fn len(&self) -> usize {
         self.items.len()
+    }
+
+    /// The items as a slice.
+    #[inline]
+    pub fn as_slice(&self) -> &[T] {
+        &self.items
     }
 
     /// Whether there are none.
@@ -83,6 +84,25 @@ impl<T> Arena<T> {
     /// Whether the handle came from an arena at least this long.
     pub fn contains(&self, handle: Handle<T>) -> bool {
         handle.index() < self.items.len()
+    }
+}
+
+impl<T: Clone> Arena<T> {
+    /// Stores an item.
+    pub fn push(&mut self, item: T) -> Handle<T> {
+        let index = u32::try_from(self.items.len()).expect("fewer than 2^32 items of one kind");
+        Arc::make_mut(&mut self.items).push(item);
+        Handle { index, kind: PhantomData }
+    }
+
+    /// An item, to be changed.
+    pub(crate) fn item_mut(&mut self, handle: Handle<T>) -> &mut T {
+        &mut Arc::make_mut(&mut self.items)[handle.index()]
+    }
+
+    /// All items, to be changed.
+    pub(crate) fn iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
+        Arc::make_mut(&mut self.items).iter_mut()
     }
 }
 

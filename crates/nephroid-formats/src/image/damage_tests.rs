@@ -21,7 +21,12 @@ fn samples() -> Vec<(ImageFormat, Vec<u8>)> {
     };
     let pixels = float.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect();
     let image = Image { width: 19, height: 11, pixels };
+    let mut pfm = b"PF\n19 11\n-1\n".to_vec();
+    pfm.extend(image.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
     vec![
+        (ImageFormat::Tga, encoded(&eight, Kind::Tga)),
+        (ImageFormat::Bmp, encoded(&eight, Kind::Bmp)),
+        (ImageFormat::Pfm, pfm),
         (ImageFormat::Png, encoded(&eight, Kind::Png)),
         (ImageFormat::Jpeg, encoded(&eight, Kind::Jpeg)),
         (ImageFormat::Hdr, encoded(&float, Kind::Hdr)),
@@ -88,7 +93,7 @@ fn exr_header(width: u32, height: u32) -> Vec<u8> {
 }
 
 fn jpeg_header(width: u16, height: u16) -> Vec<u8> {
-    let mut bytes = samples().swap_remove(1).1;
+    let mut bytes = samples().swap_remove(4).1;
     let at = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
     bytes[at + 5..at + 7].copy_from_slice(&height.to_be_bytes());
     bytes[at + 7..at + 9].copy_from_slice(&width.to_be_bytes());
@@ -99,6 +104,20 @@ fn hdr_header(width: u32, height: u32) -> Vec<u8> {
     format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n\x01\x02\x03\x04").into_bytes()
 }
 
+fn bmp_header(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = samples().swap_remove(1).1;
+    bytes[18..22].copy_from_slice(&width.to_le_bytes());
+    bytes[22..26].copy_from_slice(&height.to_le_bytes());
+    bytes
+}
+
+fn tga_header(width: u16, height: u16) -> Vec<u8> {
+    let mut bytes = samples().swap_remove(0).1;
+    bytes[12..14].copy_from_slice(&width.to_le_bytes());
+    bytes[14..16].copy_from_slice(&height.to_le_bytes());
+    bytes
+}
+
 #[test]
 fn absurd_sizes_are_refused() {
     let too_large = [
@@ -107,6 +126,8 @@ fn absurd_sizes_are_refused() {
         exr_header(100_000, 100_000),
         jpeg_header(65_500, 65_500),
         hdr_header(4_000_000_000, 4_000_000_000),
+        b"PF\n70000 1\n-1\n".to_vec(),
+        bmp_header(60_000, 60_000),
     ];
     for bytes in too_large {
         let problem = read_image_bytes(&bytes).unwrap_err();
@@ -124,6 +145,9 @@ fn sizes_that_the_file_cannot_hold_are_refused_before_allocating() {
         exr_header(16_384, 16_384),
         jpeg_header(16_384, 16_384),
         hdr_header(16_384, 16_384),
+        b"Pf\n16384 16384\n1\n".to_vec(),
+        bmp_header(16_384, 16_384),
+        tga_header(16_384, 16_384),
     ] {
         let problem = read_image_bytes(&bytes).unwrap_err();
         assert!(matches!(problem, ImageProblem::TooShort { .. }), "{problem}");

@@ -37,7 +37,7 @@ pub enum ImageProblem {
     #[error("cannot be written: it exists and is read-only")]
     ReadOnly,
     /// The first bytes are of no format that can be read.
-    #[error("is {found}; images can be OpenEXR, PNG, JPEG or Radiance HDR files")]
+    #[error("is {found}; images can be OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP or PFM files")]
     UnknownFormat {
         /// What it looks like, with its article.
         found: &'static str,
@@ -95,10 +95,7 @@ pub enum ImageProblem {
 impl ImageProblem {
     /// For a file that starts as none of the formats that can be read.
     pub(crate) fn unknown_format(bytes: &[u8]) -> Self {
-        const KNOWN: [(&[u8], &str); 9] = [
-            (b"BM", "a BMP image"),
-            (b"PF", "a PFM image"),
-            (b"Pf", "a PFM image"),
+        const KNOWN: [(&[u8], &str); 6] = [
             (b"P6", "a PPM image"),
             (b"GIF8", "a GIF image"),
             (b"II*\0", "a TIFF image"),
@@ -123,9 +120,9 @@ mod tests {
     #[test]
     fn unknown_formats_are_named_where_possible() {
         let message = |bytes: &[u8]| ImageProblem::unknown_format(bytes).to_string();
-        let supported = "; images can be OpenEXR, PNG, JPEG or Radiance HDR files";
+        let supported = "; images can be OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP or PFM files";
         assert_eq!(message(b""), format!("is an empty file{supported}"));
-        assert_eq!(message(b"BM\x01\x02"), format!("is a BMP image{supported}"));
+        assert_eq!(message(b"GIF89a"), format!("is a GIF image{supported}"));
         assert_eq!(message(b"hello"), format!("is of no format that is known here{supported}"));
     }
 

@@ -1,4 +1,4 @@
-//! Image files: OpenEXR, PNG, JPEG and Radiance HDR in, OpenEXR and PNG out.
+//! Image files: OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP and PFM in, OpenEXR and PNG out.
 //!
 //! Which format a file has is told by its first bytes, never by its name. Nothing is allocated on
 //! the word of a header before the length of the file makes it plausible.
@@ -8,6 +8,7 @@ mod limits;
 mod output;
 mod raster;
 mod read_exr;
+mod read_pfm;
 mod write_exr;
 mod write_png;
 
@@ -41,6 +42,12 @@ pub enum ImageFormat {
     Jpeg,
     /// Radiance HDR (RGBE), linear. Its `EXPOSURE` line is not applied.
     Hdr,
+    /// Truevision TGA: grey, palette or colour of 8 bits.
+    Tga,
+    /// Windows BMP.
+    Bmp,
+    /// Portable float map, linear.
+    Pfm,
 }
 
 impl ImageFormat {
@@ -51,6 +58,9 @@ impl ImageFormat {
             Self::Png => "PNG",
             Self::Jpeg => "JPEG",
             Self::Hdr => "Radiance HDR",
+            Self::Tga => "TGA",
+            Self::Bmp => "BMP",
+            Self::Pfm => "PFM",
         }
     }
 
@@ -62,9 +72,26 @@ impl ImageFormat {
             () if starts(b"\x89PNG\r\n\x1a\n") => Some(Self::Png),
             () if starts(&[0xff, 0xd8, 0xff]) => Some(Self::Jpeg),
             () if starts(b"#?") => Some(Self::Hdr),
+            () if starts(b"BM") => Some(Self::Bmp),
+            () if starts(b"PF") || starts(b"Pf") => Some(Self::Pfm),
+            () if starts_as_tga(bytes) => Some(Self::Tga),
             () => None,
         }
     }
+}
+
+/// TGA files have no signature at their start, so all that their header says must be of the few values that it can have.
+fn starts_as_tga(bytes: &[u8]) -> bool {
+    let Some(header) = bytes.first_chunk::<18>() else { return false };
+    let (palette, kind, bits, descriptor) = (header[1], header[2], header[16], header[17]);
+    let depths: &[u8] = match kind {
+        1 | 9 => &[8, 16],
+        2 | 10 => &[15, 16, 24, 32],
+        3 | 11 => &[8, 16],
+        _ => return false,
+    };
+    let needs_palette = matches!(kind, 1 | 9);
+    depths.contains(&bits) && palette <= 1 && (palette == 1 || !needs_palette) && descriptor < 64
 }
 
 /// An image as it was read.
@@ -78,7 +105,7 @@ pub struct ImageFile {
     pub non_finite: usize,
 }
 
-/// Reads an image as linear colours; PNG and JPEG are decoded with the curve of sRGB. Pixels that
+/// Reads an image as linear colours; bytes are decoded with the curve of sRGB. Pixels that
 /// are not finite stay as they are, and are counted.
 pub fn read_image(path: &Path) -> Result<ImageFile, ImageError> {
     let read = || {
@@ -114,8 +141,8 @@ pub struct TextureFile {
     pub non_finite: usize,
 }
 
-/// Reads an image for use on a surface or as an environment. With `raw` the numbers of a PNG or
-/// JPEG are taken as they are, from 0 to 1; without it they are decoded with the curve of sRGB. Alpha
+/// Reads an image for use on a surface or as an environment. With `raw` the numbers of formats of 8 or 16
+/// bits are taken as they are, from 0 to 1; without it they are decoded with the curve of sRGB. Alpha
 /// is a number as it is. Pixels that are not finite become black, and are counted; opacities become zero.
 pub fn read_texture(bytes: &[u8], raw: bool) -> Result<TextureFile, ImageProblem> {
     let mut file = decode(bytes, raw)?;
@@ -135,8 +162,11 @@ pub fn read_texture(bytes: &[u8], raw: bool) -> Result<TextureFile, ImageProblem
 fn decode(bytes: &[u8], raw: bool) -> Result<TextureFile, ImageProblem> {
     let format = ImageFormat::of(bytes).ok_or_else(|| ImageProblem::unknown_format(bytes))?;
     let decoder = || match format {
-        ImageFormat::Exr => read_exr::decode(bytes).map(Pixmap::from),
-        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr => raster::decode(bytes, format, raw),
+        ImageFormat::Exr => read_exr::decode(bytes),
+        ImageFormat::Pfm => read_pfm::decode(bytes).map(Pixmap::from),
+        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr | ImageFormat::Tga | ImageFormat::Bmp => {
+            raster::decode(bytes, format, raw)
+        }
     };
     // The decoders are other people's code on other people's bytes: should one give up in a panic,
     // the file is to blame and the program lives on.

@@ -1,6 +1,8 @@
 use std::io::Cursor;
 
-use ::image::codecs::{hdr::HdrDecoder, jpeg::JpegDecoder, png::PngDecoder};
+use ::image::codecs::{
+    bmp::BmpDecoder, hdr::HdrDecoder, jpeg::JpegDecoder, png::PngDecoder, tga::TgaDecoder,
+};
 use ::image::error::ImageError as DecodeError;
 use ::image::{DynamicImage, ImageDecoder};
 use nephroid::color::{Rgb, srgb};
@@ -9,7 +11,7 @@ use nephroid::texture::{Decoding, Pixels, Pixmap, Plane};
 use super::limits::{check_held, check_size};
 use super::{ImageFormat, ImageProblem};
 
-/// Decodes PNG, JPEG and Radiance HDR.
+/// Decodes PNG, JPEG, TGA, BMP and Radiance HDR.
 pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Pixmap, ImageProblem> {
     let problem = |error| problem(format, error);
     let reader = Cursor::new(bytes);
@@ -21,6 +23,10 @@ pub fn decode(bytes: &[u8], format: ImageFormat, raw: bool) -> Result<Pixmap, Im
             // A progressive file may spend a single bit on a block of 8×8 pixels.
             pixels(JpegDecoder::new(reader).map_err(problem)?, format, 64 * 8 * 3, bytes)?
         }
+        // Two bytes may stand for 128 pixels of 32 bits.
+        ImageFormat::Tga => pixels(TgaDecoder::new(reader).map_err(problem)?, format, 256, bytes)?,
+        // Two bytes may stand for 255 pixels of 24 bits.
+        ImageFormat::Bmp => pixels(BmpDecoder::new(reader).map_err(problem)?, format, 384, bytes)?,
         // A run of a row of any length takes some 16 bytes, and a pixel 96 bits.
         _ => pixels(HdrDecoder::new_nonstrict(reader).map_err(problem)?, format, 4096 * 12, bytes)?,
     };

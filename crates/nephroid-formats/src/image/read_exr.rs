@@ -6,17 +6,19 @@ use exr::meta::attribute::{ChannelDescription, SampleType, Text};
 use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, read};
 use nephroid::color::Rgb;
-use nephroid::texture::Image;
+use nephroid::texture::{Image, Pixmap};
 
 use super::limits::{check_held, check_size};
+use super::raster::plane_of_alpha;
 use super::{ImageFormat, ImageProblem};
 
 /// The best of the compressions: PXR24 leaves out a byte of four, then zip saves up to 1032 : 1.
 const BEST_RATIO: u64 = 1376;
 
 /// Decodes the first layer that has channels R, G and B, or Y, at its largest resolution. The data
-/// window is the image; the display window is ignored.
-pub fn decode(bytes: &[u8]) -> Result<Image, ImageProblem> {
+/// window is the image; the display window is ignored. Alpha is a channel A of the same prefix. Colours are taken as they
+/// are, which the format says are multiplied by alpha.
+pub fn decode(bytes: &[u8]) -> Result<Pixmap, ImageProblem> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(problem)?;
     if meta.headers.iter().any(|h| h.deep) {
         return Err(not_supported("deep data"));
@@ -29,16 +31,23 @@ pub fn decode(bytes: &[u8]) -> Result<Image, ImageProblem> {
         .iter()
         .find_map(|h| Channels::of(&h.channels.list))
         .ok_or_else(|| ImageProblem::NoColour { found: channel_names(&meta.headers) })?;
-    match channels {
-        Channels::Rgb(names) => decode_rgb(bytes, names),
-        Channels::Grey(name) => decode_grey(bytes, name),
-    }
-    .map_err(problem)
+    let canvas = match channels.colors {
+        Colors::Rgb(names) => decode_rgb(bytes, names, channels.alpha),
+        Colors::Grey(name) => decode_grey(bytes, name, channels.alpha),
+    };
+    let Canvas { image, alpha } = canvas.map_err(problem)?;
+    Ok(Pixmap { alpha: plane_of_alpha(alpha), ..Pixmap::from(image) })
 }
 
 /// The names of the channels that are read.
 #[derive(Debug, PartialEq)]
-enum Channels {
+struct Channels {
+    colors: Colors,
+    alpha: Option<Text>,
+}
+
+#[derive(Debug, PartialEq)]
+enum Colors {
     Rgb([Text; 3]),
     Grey(Text),
 }
@@ -51,11 +60,16 @@ impl Channels {
             let wanted = [prefix, name].concat();
             list.iter().filter(full).find(|c| c.name.as_slice() == wanted).map(|c| c.name.clone())
         };
-        let rgb =
-            |prefix: &[u8]| Some(Self::Rgb([find(prefix, b"R")?, find(prefix, b"G")?, find(prefix, b"B")?]));
+        let rgb = |prefix: &[u8]| {
+            let colors = Colors::Rgb([find(prefix, b"R")?, find(prefix, b"G")?, find(prefix, b"B")?]);
+            Some(Self { colors, alpha: find(prefix, b"A") })
+        };
         // A file of luminance and chroma is not a grey one.
         let chroma = |prefix: &[u8]| list.iter().any(|c| c.name.as_slice() == [prefix, b"RY"].concat());
-        let grey = |prefix: &[u8]| if chroma(prefix) { None } else { Some(Self::Grey(find(prefix, b"Y")?)) };
+        let grey = |prefix: &[u8]| {
+            let colors = Colors::Grey(find(prefix, b"Y").filter(|_| !chroma(prefix))?);
+            Some(Self { colors, alpha: find(prefix, b"A") })
+        };
         let prefixes = || {
             list.iter().filter_map(|c| {
                 let name = c.name.as_slice();
@@ -92,17 +106,37 @@ fn channel_names(headers: &[Header]) -> String {
     names.join(", ")
 }
 
-fn empty(size: Vec2<usize>) -> Image {
-    // The size was checked, so it fits.
-    Image::filled(size.width() as u32, size.height() as u32, Rgb::BLACK)
+/// What is filled while a file is read.
+struct Canvas {
+    image: Image,
+    /// Empty where the file has none.
+    alpha: Vec<f32>,
 }
 
-fn set(image: &mut Image, at: Vec2<usize>, value: Rgb) {
-    let index = at.y() * image.width as usize + at.x();
-    image.pixels[index] = value;
+impl Canvas {
+    fn new(size: Vec2<usize>, with_alpha: bool) -> Self {
+        // The size was checked, so it fits.
+        let image = Image::filled(size.width() as u32, size.height() as u32, Rgb::BLACK);
+        let alpha = if with_alpha { vec![1.0; image.pixels.len()] } else { Vec::new() };
+        Self { image, alpha }
+    }
+
+    fn set(&mut self, at: Vec2<usize>, value: Rgb, alpha: f32) {
+        let index = at.y() * self.image.width as usize + at.x();
+        self.image.pixels[index] = value;
+        if let Some(own) = self.alpha.get_mut(index) {
+            *own = alpha;
+        }
+    }
 }
 
-fn decode_rgb(bytes: &[u8], [r, g, b]: [Text; 3]) -> Result<Image, exr::error::Error> {
+/// The name of a channel that no file has, for what is optional.
+fn no_channel() -> Text {
+    Text::from("no such channel")
+}
+
+fn decode_rgb(bytes: &[u8], [r, g, b]: [Text; 3], alpha: Option<Text>) -> Result<Canvas, exr::error::Error> {
+    let with_alpha = alpha.is_some();
     let file = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -110,9 +144,12 @@ fn decode_rgb(bytes: &[u8], [r, g, b]: [Text; 3]) -> Result<Image, exr::error::E
         .required(r)
         .required(g)
         .required(b)
+        .optional(alpha.unwrap_or_else(no_channel), 1.0f32)
         .collect_pixels(
-            |size, _| empty(size),
-            |image: &mut Image, at, (r, g, b): (f32, f32, f32)| set(image, at, Rgb::new(r, g, b)),
+            |size, _| Canvas::new(size, with_alpha),
+            |canvas: &mut Canvas, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                canvas.set(at, Rgb::new(r, g, b), a);
+            },
         )
         .first_valid_layer()
         .all_attributes()
@@ -121,15 +158,17 @@ fn decode_rgb(bytes: &[u8], [r, g, b]: [Text; 3]) -> Result<Image, exr::error::E
     Ok(file.layer_data.channel_data.pixels)
 }
 
-fn decode_grey(bytes: &[u8], y: Text) -> Result<Image, exr::error::Error> {
+fn decode_grey(bytes: &[u8], y: Text, alpha: Option<Text>) -> Result<Canvas, exr::error::Error> {
+    let with_alpha = alpha.is_some();
     let file = read()
         .no_deep_data()
         .largest_resolution_level()
         .specific_channels()
         .required(y)
+        .optional(alpha.unwrap_or_else(no_channel), 1.0f32)
         .collect_pixels(
-            |size, _| empty(size),
-            |image: &mut Image, at, (y,): (f32,)| set(image, at, Rgb::splat(y)),
+            |size, _| Canvas::new(size, with_alpha),
+            |canvas: &mut Canvas, at, (y, a): (f32, f32)| canvas.set(at, Rgb::splat(y), a),
         )
         .first_valid_layer()
         .all_attributes()

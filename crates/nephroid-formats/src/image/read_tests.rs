@@ -153,6 +153,66 @@ fn exr_channels_are_found() {
 }
 
 #[test]
+fn alpha_is_kept_where_it_says_something() {
+    let opacities = |bytes: &[u8]| {
+        let image = read_texture(bytes, false).expect("a sound file").image;
+        image.alpha.is_some().then(|| [image.opacity(0, 0), image.opacity(1, 0)])
+    };
+    let png = |image: DynamicImage| opacities(&encoded(&image, Kind::Png));
+    assert_eq!(png(two!(ImageLumaA8, [9u8, 255, 9, 51])), Some([1.0, 0.2]));
+    assert_eq!(png(two!(ImageRgba8, [1u8, 2, 3, 0, 1, 2, 3, 102])), Some([0.0, 0.4]));
+    assert_eq!(png(two!(ImageRgba16, [1u16, 2, 3, 13_107, 1, 2, 3, 65_535])), Some([0.2, 1.0]));
+    assert_eq!(png(two!(ImageRgba8, [1u8, 2, 3, 255, 1, 2, 3, 255])), None);
+    assert_eq!(png(two!(ImageRgb8, [1u8, 2, 3, 1, 2, 3])), None);
+    let rgba = two!(ImageRgba8, [1u8, 2, 3, 0, 1, 2, 3, 102]);
+    assert_eq!(opacities(&encoded(&rgba, Kind::Tga)), Some([0.0, 0.4]));
+    let one = [1.0, 1.0];
+    for names in [["A", "R", "G", "B"], ["c.A", "c.R", "c.G", "c.B"]] {
+        let [a, r, g, b] = names;
+        let channels = |alpha| half_exr(&[&[(a, alpha), (b, one), (g, one), (r, one)]]);
+        assert_eq!(opacities(&channels([0.5, 0.25])), Some([0.5, 0.25]));
+        assert_eq!(opacities(&channels(one)), None);
+    }
+    assert_eq!(opacities(&half_exr(&[&[("A", [0.5, 0.0]), ("Y", one)]])), Some([0.5, 0.0]));
+}
+
+#[test]
+fn bytes_stay_bytes() {
+    let bytes_of = |image: DynamicImage, kind| {
+        let image = read_texture(&encoded(&image, kind), false).expect("a sound file").image;
+        image.bytes()
+    };
+    for kind in [Kind::Png, Kind::Jpeg, Kind::Bmp, Kind::Tga] {
+        assert_eq!(bytes_of(DynamicImage::ImageRgb8(ImageBuffer::new(40, 20)), kind), 2400, "{kind:?}");
+    }
+    assert_eq!(bytes_of(DynamicImage::ImageLuma8(ImageBuffer::new(40, 20)), Kind::Png), 800);
+}
+
+#[test]
+fn bmp_and_tga_are_read_from_the_top() {
+    let pixels = [[255u8, 102, 0], [51, 0, 204], [1, 2, 3], [4, 5, 6]];
+    let image = ImageBuffer::from_raw(2, 2, pixels.concat()).expect("four pixels");
+    for (kind, format) in [(Kind::Bmp, ImageFormat::Bmp), (Kind::Tga, ImageFormat::Tga)] {
+        let file = read_texture(&encoded(&DynamicImage::ImageRgb8(image.clone()), kind), true);
+        let file = file.expect("a sound file");
+        assert_eq!(file.format, format);
+        let found: Vec<Rgb> = file.image.pixels.iter().map(|p| p * 255.0).collect();
+        for (found, expected) in found.iter().zip(pixels) {
+            assert_eq!(found.to_array().map(f32::round), expected.map(f32::from), "{kind:?}");
+        }
+    }
+    // Lower rows first, as most programs write them, in runs and with a palette.
+    let mut tga = vec![0, 1, 9, 0, 0, 2, 0, 24, 0, 0, 0, 0, 2, 0, 2, 0, 8, 0];
+    tga.extend([0, 0, 255, 255, 0, 0]);
+    tga.extend([0x81, 0, 0x81, 1]);
+    let file = read_texture(&tga, true).expect("a sound file");
+    assert_eq!(
+        (file.image.pixel(0, 1), file.image.pixel(1, 0)),
+        (Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 0.0, 1.0))
+    );
+}
+
+#[test]
 fn exr_without_colour_says_what_it_has() {
     let without = half_exr(&[&[("Z", [0.0; 2]), ("motion.X", [0.0; 2])]]);
     let message = read_image_bytes(&without).unwrap_err().to_string();

@@ -1,11 +1,22 @@
-//! Triangle meshes from files.
+//! Triangle meshes: from files, and from shapes that are made of triangles here.
 
+mod grid;
+mod gzip;
 mod obj;
+mod patches;
 mod ply;
+mod ply_binary;
+mod quadrics;
+mod serialized;
+mod subdivide;
 
 pub use obj::read_obj;
 pub(crate) use obj::replace_missing_normals;
+pub use patches::Patches;
 pub use ply::read_ply;
+pub use quadrics::{cylinder_part, disk_part, sphere_part};
+pub use serialized::read_serialized;
+pub use subdivide::loop_subdivision;
 
 use nephroid::math::Vec3;
 use nephroid::shape::Mesh;

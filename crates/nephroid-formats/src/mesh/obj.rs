@@ -2,13 +2,15 @@
 
 use std::collections::HashMap;
 
+use nephroid::color::{Rgb, srgb};
 use nephroid::math::{Vec2, Vec3};
 use nephroid::shape::Mesh;
 
 use super::{MeshError, MeshFile, MeshOptions, without_degenerate};
 
 /// Reads the faces of an OBJ file as one mesh: polygons as fans of triangles, groups and materials
-/// ignored. Corners without a normal get a smooth one, unless `face_normals` says otherwise.
+/// ignored. Corners without a normal get a smooth one, unless `face_normals` says otherwise. Colours behind the
+/// coordinates of vertices are decoded from sRGB, as programs that paint vertices write them.
 ///
 /// # Errors
 ///
@@ -21,7 +23,7 @@ pub fn read_obj(bytes: &[u8], options: MeshOptions) -> Result<MeshFile, MeshErro
         let line = line.split('#').next().unwrap_or_default();
         let mut words = line.split_ascii_whitespace();
         let read = match words.next() {
-            Some("v") => numbers(words).map(|[x, y, z]| file.positions.push(Vec3::new(x, y, z))),
+            Some("v") => file.vertex(words),
             Some("vn") => numbers(words).map(|[x, y, z]| file.normals.push(Vec3::new(x, y, z))),
             Some("vt") => numbers(words).map(|[u, v]| {
                 let v = if options.flip_tex_coords { 1.0 - v } else { v };
@@ -63,10 +65,28 @@ struct Obj {
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
+    /// A colour for each position, if any has one.
+    colors: Vec<Rgb>,
     triangles: Vec<[Corner; 3]>,
 }
 
 impl Obj {
+    /// Three coordinates, perhaps with three channels of a colour behind.
+    fn vertex<'l>(&mut self, words: impl Iterator<Item = &'l str> + Clone) -> Result<(), String> {
+        let [x, y, z] = numbers(words.clone())?;
+        let number = self.positions.len();
+        self.positions.push(Vec3::new(x, y, z));
+        let has_color = words.clone().count() >= 6;
+        if has_color && self.colors.is_empty() {
+            self.colors.resize(number, Rgb::WHITE);
+        }
+        if has_color || !self.colors.is_empty() {
+            let color = if has_color { Rgb::from(numbers::<3>(words.skip(3))?) } else { Rgb::WHITE };
+            self.colors.push(color.map(srgb::decode));
+        }
+        Ok(())
+    }
+
     fn face<'l>(&mut self, words: impl Iterator<Item = &'l str>) -> Result<(), String> {
         let corners = words.map(|word| self.corner(word)).collect::<Result<Vec<_>, _>>()?;
         if corners.len() < 3 {
@@ -107,6 +127,9 @@ impl Obj {
                 let corner = if options.face_normals { (corner.0, corner.1, None) } else { *corner };
                 *vertices.entry(corner).or_insert_with(|| {
                     mesh.positions.push(self.positions[corner.0 as usize]);
+                    if let Some(color) = self.colors.get(corner.0 as usize) {
+                        mesh.colors.push(*color);
+                    }
                     if has_uvs {
                         mesh.uvs.push(corner.1.map_or(Vec2::ZERO, |i| self.uvs[i as usize]));
                     }
@@ -199,6 +222,15 @@ mod tests {
         let mesh = read_obj(text.as_bytes(), FLIP).unwrap().mesh;
         assert_eq!(mesh.normals, [Vec3::X, Vec3::Z, Vec3::Z]);
         assert!(mesh.uvs.is_empty());
+    }
+
+    #[test]
+    fn vertices_may_have_colours() {
+        let text = "v 0 0 0\nv 1 0 0 1 0 0.5\nv 0 1 0 0 1 0\nv 0 0 1 1\nf 1 2 3\nf 2 3 4\n";
+        let mesh = read_obj(text.as_bytes(), FLIP).expect("a sound file").mesh;
+        let red = Rgb::new(1.0, 0.0, srgb::decode(0.5));
+        assert_eq!(mesh.colors, [Rgb::WHITE, red, Rgb::new(0.0, 1.0, 0.0), Rgb::WHITE]);
+        assert!(read_obj(b"v 0 0 0 1 nan 0\n", FLIP).is_err());
     }
 
     #[test]

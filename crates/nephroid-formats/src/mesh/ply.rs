@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use nephroid::color::{Rgb, srgb};
 use nephroid::math::{Vec2, Vec3};
 use nephroid::shape::Mesh;
 use ply_rs_bw::parser::{Parser, Reader};
@@ -9,83 +10,187 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use super::gzip::unpacked;
 use super::obj::replace_missing_normals;
+use super::ply_binary::{Body, Use, size_of_scalar};
 use super::{MeshError, MeshFile, MeshOptions, without_degenerate};
 
-/// Reads a PLY file, as text or binary of either byte order, as one mesh: polygons as fans of
-/// triangles, elements other than `vertex` and `face` ignored. Without normals in the file the mesh
-/// gets smooth ones, unless `face_normals` says otherwise.
+/// Reads a PLY file, as text or binary of either byte order and perhaps packed by gzip, as one mesh: polygons as fans of
+/// triangles, elements other than `vertex` and `face` ignored. Without normals in the file the mesh gets smooth ones,
+/// unless `face_normals` says otherwise. Colours of vertices that are whole numbers are decoded from sRGB, others are
+/// linear.
 ///
 /// # Errors
 ///
 /// A header that promises more than the file holds, a number that is not finite, an index that leads
 /// nowhere, no face with an area.
 pub fn read_ply(bytes: &[u8], options: MeshOptions) -> Result<MeshFile, MeshError> {
+    let bytes = &*unpacked(bytes)?;
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Vertex>::new()
         .read_header(&mut reader)
         .map_err(|error| MeshError::new(format!("not a PLY header: {}", one_line(&error.to_string()))))?;
     let body = (bytes.len() as u64).saturating_sub(reader.get_ref().position());
     check_size(&header, body)?;
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    for (name, element) in &header.elements {
-        match name.as_str() {
-            "vertex" => vertices = elements::<Vertex>(&mut reader, element, &header)?,
-            "face" => faces = elements::<Face>(&mut reader, element, &header)?,
-            _ => drop(elements::<Ignored>(&mut reader, element, &header)?),
+    let mut made = Making::new(&header, options)?;
+    if header.encoding == Encoding::Ascii {
+        for (name, element) in &header.elements {
+            match name.as_str() {
+                "vertex" => {
+                    let vertices = elements::<Vertex>(&mut reader, element, &header)?;
+                    vertices.iter().try_for_each(|vertex| made.vertex(&vertex.0))?;
+                }
+                "face" => {
+                    let faces = elements::<Face>(&mut reader, element, &header)?;
+                    faces.iter().try_for_each(|face| made.face(&face.0))?;
+                }
+                _ => drop(elements::<Ignored>(&mut reader, element, &header)?),
+            }
+        }
+    } else {
+        let mut body = Body::new(&bytes[bytes.len() - body as usize..], header.encoding);
+        for (name, element) in &header.elements {
+            match name.as_str() {
+                "vertex" => {
+                    let wanted = |name: &str| place_of(name).map_or(Use::None, Use::Number);
+                    body.elements(element, wanted, |numbers, _| made.vertex(numbers))?;
+                }
+                "face" => {
+                    let wanted = |name: &str| if is_corners(name) { Use::List } else { Use::None };
+                    body.elements::<0>(element, wanted, |_, corners| made.face(corners))?;
+                }
+                _ => body.elements::<0>(element, |_| Use::None, |_, _| Ok(()))?,
+            }
         }
     }
-    let has = |names: &[&str]| {
-        let vertex = header.elements.get("vertex");
-        vertex.is_some_and(|e| names.iter().all(|name| e.properties.contains_key(*name)))
-    };
-    if !has(&["x", "y", "z"]) {
-        return Err(MeshError::new("the vertices have no x, y and z"));
-    }
-    let has_normals = has(&["nx", "ny", "nz"]) && !options.face_normals;
-    let has_uvs = has(&["u", "v"]) || has(&["s", "t"]) || has(&["texture_u", "texture_v"]);
-    let mut mesh = Mesh::default();
-    for (index, vertex) in vertices.iter().enumerate() {
-        if !vertex.0.iter().all(|v| (*v as f32).is_finite()) {
-            return Err(MeshError::new(format!("vertex {index} holds a number that is not finite")));
-        }
-        let [x, y, z, nx, ny, nz, u, v] = vertex.0.map(|v| v as f32);
-        mesh.positions.push(Vec3::new(x, y, z));
-        if has_normals {
-            mesh.normals.push(Vec3::new(nx, ny, nz).try_normalize().unwrap_or(Vec3::ZERO));
-        }
-        if has_uvs {
-            mesh.uvs.push(Vec2::new(u, if options.flip_tex_coords { 1.0 - v } else { v }));
-        }
-    }
-    for (index, face) in faces.iter().enumerate() {
-        triangulate(index, face, vertices.len(), &mut mesh.triangles)?;
-    }
-    if has_normals {
-        replace_missing_normals(&mut mesh);
-    } else if !options.face_normals {
-        mesh.compute_normals();
-    }
-    without_degenerate(mesh, has_normals)
+    made.finish()
 }
 
-fn triangulate(
-    number: usize,
-    face: &Face,
+/// What a file can say of a vertex: position, normal, texture coordinates and colour.
+const NUMBERS: usize = 11;
+
+/// The place of a property among them.
+fn place_of(name: &str) -> Option<usize> {
+    Some(match name {
+        "x" => 0,
+        "y" => 1,
+        "z" => 2,
+        "nx" => 3,
+        "ny" => 4,
+        "nz" => 5,
+        "u" | "s" | "texture_u" => 6,
+        "v" | "t" | "texture_v" => 7,
+        "r" | "red" => 8,
+        "g" | "green" => 9,
+        "b" | "blue" => 10,
+        _ => return None,
+    })
+}
+
+fn is_corners(name: &str) -> bool {
+    name == "vertex_index" || name == "vertex_indices"
+}
+
+/// A mesh as its elements come. Faces may come before the vertices.
+struct Making {
+    mesh: Mesh,
+    options: MeshOptions,
+    has_normals: bool,
+    has_uvs: bool,
+    /// What colours are multiplied by and whether they are encoded, if there are any.
+    colors: Option<(f64, bool)>,
     vertices: usize,
-    triangles: &mut Vec<[u32; 3]>,
-) -> Result<(), MeshError> {
-    let index = |i: &i64| match u32::try_from(*i) {
-        Ok(index) if (index as usize) < vertices => Ok(index),
-        _ => Err(MeshError::new(format!("face {number}: vertex {i} does not exist: there are {vertices}"))),
-    };
-    let corners = face.0.iter().map(index).collect::<Result<Vec<_>, _>>()?;
-    if corners.len() < 3 {
-        let message = format!("face {number} has {} corners instead of at least 3", corners.len());
-        return Err(MeshError::new(message));
+    faces: usize,
+}
+
+impl Making {
+    fn new(header: &Header, options: MeshOptions) -> Result<Self, MeshError> {
+        let vertex = header.elements.get("vertex");
+        let has = |names: &[&str]| {
+            vertex.is_some_and(|e| names.iter().all(|name| e.properties.contains_key(*name)))
+        };
+        if !has(&["x", "y", "z"]) {
+            return Err(MeshError::new("the vertices have no x, y and z"));
+        }
+        let has_normals = has(&["nx", "ny", "nz"]) && !options.face_normals;
+        let has_uvs = has(&["u", "v"]) || has(&["s", "t"]) || has(&["texture_u", "texture_v"]);
+        let colors = [["red", "green", "blue"], ["r", "g", "b"]].into_iter().find(|names| has(names));
+        let colors = colors.map(|names| {
+            match vertex.and_then(|e| e.properties.get(names[0])).map(|property| &property.data_type) {
+                Some(PropertyType::Scalar(ScalarType::UChar)) => (1.0 / 255.0, true),
+                Some(PropertyType::Scalar(ScalarType::UShort)) => (1.0 / 65_535.0, true),
+                _ => (1.0, false),
+            }
+        });
+        let count = |name: &str| header.elements.get(name).map_or(0, |e| e.count);
+        let (vertices, faces) = (count("vertex"), count("face"));
+        let of_all = |wanted: bool| if wanted { vertices } else { 0 };
+        // `check_size` knows that the file is as long.
+        let mesh = Mesh {
+            positions: Vec::with_capacity(vertices),
+            normals: Vec::with_capacity(of_all(has_normals)),
+            uvs: Vec::with_capacity(of_all(has_uvs)),
+            colors: Vec::with_capacity(of_all(colors.is_some())),
+            triangles: Vec::with_capacity(faces),
+        };
+        Ok(Self { mesh, options, has_normals, has_uvs, colors, vertices, faces: 0 })
     }
-    triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
-    Ok(())
+
+    fn vertex(&mut self, numbers: &[f64; NUMBERS]) -> Result<(), MeshError> {
+        let mesh = &mut self.mesh;
+        if !numbers.iter().all(|v| (*v as f32).is_finite()) {
+            let index = mesh.positions.len();
+            return Err(MeshError::new(format!("vertex {index} holds a number that is not finite")));
+        }
+        let [x, y, z, nx, ny, nz, u, v, ..] = numbers.map(|v| v as f32);
+        mesh.positions.push(Vec3::new(x, y, z));
+        if self.has_normals {
+            mesh.normals.push(Vec3::new(nx, ny, nz).try_normalize().unwrap_or(Vec3::ZERO));
+        }
+        if self.has_uvs {
+            mesh.uvs.push(Vec2::new(u, if self.options.flip_tex_coords { 1.0 - v } else { v }));
+        }
+        if let Some((scale, encoded)) = self.colors {
+            let value = |v: f64| (v * scale) as f32;
+            let color = Rgb::from([numbers[8], numbers[9], numbers[10]].map(value));
+            mesh.colors.push(if encoded { color.map(srgb::decode) } else { color });
+        }
+        Ok(())
+    }
+
+    fn face(&mut self, corners: &[i64]) -> Result<(), MeshError> {
+        let (number, vertices) = (self.faces, self.vertices);
+        self.faces += 1;
+        let index = |i: i64| match u32::try_from(i) {
+            Ok(index) if (index as usize) < vertices => Ok(index),
+            _ => {
+                let message = format!("face {number}: vertex {i} does not exist: there are {vertices}");
+                Err(MeshError::new(message))
+            }
+        };
+        for &corner in corners {
+            index(corner)?;
+        }
+        if corners.len() < 3 {
+            let message = format!("face {number} has {} corners instead of at least 3", corners.len());
+            return Err(MeshError::new(message));
+        }
+        for pair in corners[1..].windows(2) {
+            self.mesh.triangles.push([index(corners[0])?, index(pair[0])?, index(pair[1])?]);
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<MeshFile, MeshError> {
+        let Self { mut mesh, options, has_normals, .. } = self;
+        if has_normals {
+            replace_missing_normals(&mut mesh);
+        } else if !options.face_normals {
+            mesh.compute_normals();
+        }
+        mesh.triangles.shrink_to_fit();
+        without_degenerate(mesh, has_normals)
+    }
 }
 
 fn elements<E: PropertyAccess>(
@@ -94,7 +199,7 @@ fn elements<E: PropertyAccess>(
     header: &Header,
 ) -> Result<Vec<E>, MeshError> {
     Parser::<E>::new().read_payload_for_element(reader, element, header).map_err(|error| {
-        let line = error.line().filter(|_| header.encoding == Encoding::Ascii);
+        let line = error.line();
         let message = format!("broken {}: {}", element.name, one_line(&error.to_string()));
         MeshError { line, message }
     })
@@ -127,41 +232,22 @@ fn check_size(header: &Header, body: u64) -> Result<(), MeshError> {
     Ok(())
 }
 
-fn size_of_scalar(kind: &ScalarType) -> u64 {
-    match kind {
-        ScalarType::Char | ScalarType::UChar => 1,
-        ScalarType::Short | ScalarType::UShort => 2,
-        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
-        ScalarType::Double => 8,
-    }
-}
-
 fn one_line(text: &str) -> String {
     // What follows is the parser's own state.
     let text = text.split("Error:").next().unwrap_or_default();
     text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(200).collect()
 }
 
-/// Position, normal and texture coordinates.
-struct Vertex([f64; 8]);
+/// The numbers of a vertex.
+struct Vertex([f64; NUMBERS]);
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
-        Self([0.0; 8])
+        Self([0.0; NUMBERS])
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let place = match name {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            "nx" => 3,
-            "ny" => 4,
-            "nz" => 5,
-            "u" | "s" | "texture_u" => 6,
-            "v" | "t" | "texture_v" => 7,
-            _ => return PropertyAccessResult::Ignored,
-        };
+        let Some(place) = place_of(name) else { return PropertyAccessResult::Ignored };
         self.0[place] = match property {
             Property::Char(v) => f64::from(v),
             Property::UChar(v) => f64::from(v),
@@ -186,7 +272,7 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if name != "vertex_index" && name != "vertex_indices" {
+        if !is_corners(name) {
             return PropertyAccessResult::Ignored;
         }
         self.0 = match property {
@@ -220,7 +306,7 @@ mod tests {
     fn header(encoding: &str) -> String {
         format!(
             "ply\nformat {encoding} 1.0\ncomment a quad\nelement vertex 4\nproperty float x\nproperty float y\n\
-             property double z\nproperty uchar red\nproperty float s\nproperty float t\nelement face 1\n\
+             property double z\nproperty uchar quality\nproperty float s\nproperty float t\nelement face 1\n\
              property list uchar int vertex_indices\nend_header\n"
         )
     }
@@ -261,6 +347,41 @@ mod tests {
         assert_eq!(read_ply(&binary(false), PLAIN).unwrap().mesh, mesh);
         assert_eq!(read_ply(text().replace('\n', "\r\n").as_bytes(), PLAIN).unwrap().mesh, mesh);
         assert_eq!(read_ply(text().trim_end().as_bytes(), PLAIN).unwrap().mesh, mesh);
+    }
+
+    #[test]
+    fn packed_files_are_unpacked() {
+        use std::io::Write;
+        let plain = read_ply(&binary(false), PLAIN).expect("a sound file");
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(&binary(false)).expect("memory takes all");
+        let packed = encoder.finish().expect("memory takes all");
+        assert_eq!(read_ply(&packed, PLAIN).expect("the same"), plain);
+        assert!(read_ply(&packed[..packed.len() - 9], PLAIN).is_err());
+    }
+
+    #[test]
+    fn colours_of_vertices_are_read() {
+        let file = |kind: &str, colors: [&str; 3]| {
+            let properties: String =
+                ["x", "y", "z"].iter().map(|name| format!("property float {name}\n")).collect();
+            let of_colors: String = ["red", "green", "blue", "alpha"]
+                .iter()
+                .map(|name| format!("property {kind} {name}\n"))
+                .collect();
+            let [a, b, c] = colors;
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex 3\n{properties}{of_colors}element face 1\n\
+                 property list uchar int vertex_index\nend_header\n0 0 0 {a}\n1 0 0 {b}\n0 1 0 {c}\n3 0 1 2\n"
+            )
+        };
+        let colors = |text: String| read_ply(text.as_bytes(), PLAIN).expect("a sound file").mesh.colors;
+        let bytes = colors(file("uchar", ["0 255 128 9", "0 0 0 0", "255 255 255 255"]));
+        assert_eq!(bytes[0], Rgb::new(0.0, 1.0, srgb::decode((128.0f64 / 255.0) as f32)));
+        assert_eq!(bytes[2], Rgb::WHITE);
+        let floats = colors(file("float", ["0.1 0.2 3 1", "0 0 0 1", "0 0 0 1"]));
+        assert_eq!(floats[0], Rgb::new(0.1, 0.2, 3.0));
+        assert!(read_ply(text().as_bytes(), PLAIN).expect("a sound file").mesh.colors.is_empty());
     }
 
     #[test]

@@ -33,7 +33,6 @@ mod reader;
 mod roughness;
 mod shape;
 mod state;
-mod subdivision;
 mod texture;
 mod token;
 mod transform;

@@ -3,7 +3,7 @@
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::material::Material;
-use nephroid::math::{DVec3, Transform, Vec3};
+use nephroid::math::{DVec3, Transform};
 use nephroid::medium::Boundary;
 use nephroid::shape::{Geometry, Mesh, Shape};
 use nephroid::texture::Texture;
@@ -208,9 +208,4 @@ impl Reader<'_> {
         }
         self.store_mesh(parameters, quadric.mesh()).map(Form::mesh)
     }
-}
-
-/// Coordinates as the renderer has them.
-pub(super) fn single(v: DVec3) -> Vec3 {
-    v.as_vec3()
 }

@@ -6,6 +6,7 @@
 mod binary;
 mod build;
 mod lanes;
+mod part;
 #[expect(unsafe_code, reason = "a stack that is not filled in advance")]
 mod stack;
 mod traverse;
@@ -32,7 +33,7 @@ struct Node {
 }
 
 /// What a tree is built over: boxes, counted from zero.
-pub(crate) trait Boxes {
+pub(crate) trait Boxes: Sync {
     fn count(&self) -> u32;
     fn get(&self, number: u32) -> Bounds;
 }

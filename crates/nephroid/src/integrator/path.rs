@@ -4,8 +4,9 @@
 
 use super::{Components, Estimator, LightPart, Met, Probe};
 use crate::color::Rgb;
+use crate::light::Asker;
 use crate::material::{Transport, segments_by};
-use crate::math::{Ray, Vec3};
+use crate::math::Ray;
 use crate::medium::{Passage, PhaseSample};
 use crate::photon_map::NearestList;
 use crate::sampling::power_heuristic;
@@ -32,7 +33,7 @@ enum Last {
     /// From the camera or a Dirac lobe: nothing else could have found what it meets.
     Certain,
     /// Sampled from a BSDF or a phase function at a point with a density, as lights were sampled, too.
-    Sampled { from: Vec3, pdf_solid_angle: f32 },
+    Sampled { from: Asker, pdf_solid_angle: f32 },
 }
 
 /// The path tracer of a world.
@@ -101,7 +102,7 @@ fn radiance<P: Probe>(
                     }
                     throughput = throughput / q;
                     let PhaseSample { wi, pdf_solid_angle } = matter.phase().sample(wo, u);
-                    last = Last::Sampled { from: position, pdf_solid_angle };
+                    last = Last::Sampled { from: Asker::in_space(position), pdf_solid_angle };
                     ray = Ray::new(position, wi);
                     depth += 1;
                     continue;
@@ -111,8 +112,8 @@ fn radiance<P: Probe>(
         let Some(hit) = hit else {
             let sky = match last {
                 Last::Certain => world.sky(ray.direction),
-                Last::Sampled { pdf_solid_angle, .. } => {
-                    sky_by_bsdf(world, ray.direction, pdf_solid_angle, config.direct_lights)
+                Last::Sampled { from, pdf_solid_angle } => {
+                    sky_by_bsdf(world, &from, ray.direction, pdf_solid_angle, config.direct_lights)
                 }
             };
             book(&mut out, so_far.part(last), throughput * sky, probe);
@@ -123,7 +124,7 @@ fn radiance<P: Probe>(
             let weight = match last {
                 Last::Certain => 1.0,
                 Last::Sampled { from, pdf_solid_angle } => {
-                    let pdf = light_pdf(world, light, from, &hit.point, config.direct_lights);
+                    let pdf = light_pdf(world, light, &from, &hit.point, config.direct_lights);
                     power_heuristic(pdf_solid_angle, pdf)
                 }
             };
@@ -141,7 +142,7 @@ fn radiance<P: Probe>(
             if fits(depth + 1) {
                 let lit = Lit { scatterer: Scatterer::Surface { hit: &hit, bsdf: &bsdf }, wo, inside };
                 let direct = throughput * lights(world, config, &lit, sample);
-                let part = so_far.part(Last::Sampled { from: hit.point.position, pdf_solid_angle: 1.0 });
+                let part = so_far.part(Last::Sampled { from: Asker::on(&hit.point), pdf_solid_angle: 1.0 });
                 book(&mut out, part, direct, probe);
             }
         }
@@ -158,7 +159,7 @@ fn radiance<P: Probe>(
         last = if scattered.is_dirac() {
             Last::Certain
         } else {
-            Last::Sampled { from: hit.point.position, pdf_solid_angle: scattered.pdf_solid_angle }
+            Last::Sampled { from: Asker::on(&hit.point), pdf_solid_angle: scattered.pdf_solid_angle }
         };
         inside = world.cross(inside, &hit, ray.direction, scattered.wi);
         ray = leave(&hit.point, scattered.wi);

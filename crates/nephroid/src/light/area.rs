@@ -2,6 +2,8 @@ use std::f32::consts::PI;
 
 use super::aim::{Cones, Targets};
 use super::emitter::{Emission, EmissionNumbers, Incident, Lookup, Source};
+use super::extent::{Extent, NormalCone};
+use super::tiles::Tiles;
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, warp};
@@ -17,6 +19,10 @@ pub(crate) struct AreaEmitter {
     area: f32,
     middle: Vec3,
     radiance: Handle<Texture>,
+    /// Over the surface.
+    mean_radiance: Rgb,
+    /// Where a textured rectangle is bright.
+    tiles: Option<Tiles>,
     flipped: bool,
     /// Its own index, if none of its light can meet it.
     convex: Option<u32>,
@@ -29,16 +35,26 @@ impl AreaEmitter {
         radiance: Handle<Texture>,
         flipped: bool,
         convex: Option<u32>,
+        lookup: Lookup<'_>,
     ) -> Option<Self> {
         let by_area = Discrete::new(pieces.iter().map(|p| f64::from(p.area())))?;
         let area = by_area.total() as f32;
         let middle = pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(piece.bounds())).center();
-        Some(Self { middle, pieces, by_area, area, radiance, flipped, convex })
+        let tiles = match &pieces[..] {
+            [Primitive::Flat(flat)] if flat.is_rectangle() => Tiles::new(lookup.textures, radiance),
+            _ => None,
+        };
+        let mean_radiance = match (&lookup.textures.list[radiance], &tiles) {
+            (Texture::Constant(value), _) => *value,
+            (_, Some(tiles)) => tiles.mean,
+            _ => mean_over(&pieces, radiance, lookup),
+        };
+        Some(Self { middle, pieces, by_area, area, radiance, mean_radiance, tiles, flipped, convex })
     }
 
-    /// πAL with the texture's mean for L, in W; exact for constant radiance.
-    pub fn power(&self, textures: &Textures) -> Rgb {
-        textures.mean(self.radiance) * (PI * self.area)
+    /// πAL with the mean radiance L, in W; exact for constant radiance.
+    pub fn power(&self) -> Rgb {
+        self.mean_radiance * (PI * self.area)
     }
 
     /// The radiance that a point of it gives off.
@@ -56,11 +72,38 @@ impl AreaEmitter {
         self.middle
     }
 
-    /// A point uniformly by area.
-    fn sample_point(&self, lookup: Lookup<'_>, u: Vec2) -> SurfacePoint {
-        let (piece, _, x) = self.by_area.sample(u.x);
-        let point = self.pieces[piece].sample(Vec2::new(x, u.y), lookup.meshes);
-        if self.flipped { point.flipped() } else { point }
+    /// Where it is and where to it shines.
+    pub fn extent(&self, lookup: Lookup<'_>, power: f32) -> Extent {
+        let bounds = self.pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(piece.bounds()));
+        let cone_of = |piece: &Primitive| match piece {
+            Primitive::Sphere(_) | Primitive::Cylinder(_) => NormalCone::SPHERE,
+            // A triangle's side may turn where its vertices have normals.
+            Primitive::Flat(_) | Primitive::Triangle(_) => {
+                let corner = |u| {
+                    let point = piece.sample(u, lookup.meshes);
+                    NormalCone::of_surface(if self.flipped { -point.ng } else { point.ng })
+                };
+                corner(Vec2::ZERO).union(corner(Vec2::X)).union(corner(Vec2::Y))
+            }
+        };
+        let cones = self.pieces.iter().map(cone_of);
+        Extent::new(bounds, cones.reduce(NormalCone::union).unwrap_or(NormalCone::SPHERE), power)
+    }
+
+    /// A point and its density over that of one uniform by area: by brightness where a rectangle has a texture.
+    fn sample_point(&self, lookup: Lookup<'_>, u: Vec2) -> (SurfacePoint, f32) {
+        let (piece, u, density) = match &self.tiles {
+            Some(tiles) => {
+                let (uv, density) = tiles.sample(u);
+                (0, uv, density)
+            }
+            None => {
+                let (piece, _, x) = self.by_area.sample(u.x);
+                (piece, Vec2::new(x, u.y), 1.0)
+            }
+        };
+        let point = self.pieces[piece].sample(u, lookup.meshes);
+        (if self.flipped { point.flipped() } else { point }, density)
     }
 
     /// The sphere and 1 − cos of the cone it fills from `p`, if that is how `p` samples it: a sphere
@@ -73,8 +116,8 @@ impl AreaEmitter {
     }
 
     pub fn sample_incident(&self, lookup: Lookup<'_>, p: Vec3, u: Vec2) -> Option<Incident> {
-        let (point, cone) = match self.cone(p) {
-            Some((sphere, width)) => (sphere.sample_cone(p, width, u), Some(width)),
+        let ((point, density), cone) = match self.cone(p) {
+            Some((sphere, width)) => ((sphere.sample_cone(p, width, u), 1.0), Some(width)),
             None => (self.sample_point(lookup, u), None),
         };
         let to_light = point.position - p;
@@ -85,7 +128,7 @@ impl AreaEmitter {
         }
         let pdf_solid_angle = match cone {
             Some(width) => 1.0 / (2.0 * PI * width),
-            None => to_light.length_squared() / (cos * self.area),
+            None => density * to_light.length_squared() / (cos * self.area),
         };
         Some(Incident {
             wi,
@@ -104,10 +147,11 @@ impl AreaEmitter {
         let to_light = point.position - p;
         let distance_sq = to_light.length_squared();
         let cos = to_light.dot(point.ng).abs() / distance_sq.sqrt();
-        if cos > 0.0 { distance_sq / (cos * self.area) } else { 0.0 }
+        let density = self.tiles.as_ref().map_or(1.0, |tiles| tiles.density(point.uv));
+        if cos > 0.0 { density * distance_sq / (cos * self.area) } else { 0.0 }
     }
 
-    /// Uniform over the surface, and cosine-distributed about its normal or, as far as they are less than
+    /// Uniform over the surface, or by its texture's brightness, and cosine-distributed about its normal or, as far as they are less than
     /// half of the hemisphere, uniform over the targets seen from there; `whole` is the power of the light.
     pub fn emit(
         &self,
@@ -123,8 +167,8 @@ impl AreaEmitter {
                 return self.emit_from_ball(lookup, u, sphere, &cones, whole);
             }
         }
-        let point = self.sample_point(lookup, u.position);
-        let exitance = lookup.textures.eval(self.radiance, point.uv) * (PI * self.area);
+        let (point, density) = self.sample_point(lookup, u.position);
+        let exitance = lookup.textures.eval(self.radiance, point.uv) * (PI * self.area / density);
         let above = |axis: Vec3, sin: f32| axis.dot(point.ng) > -sin;
         let cones = targets.and_then(|t| Cones::seen_from(t, (point.position, 0.0), self.convex, PI, above));
         let Some(cones) = cones else {
@@ -165,4 +209,21 @@ impl AreaEmitter {
             emitted: whole,
         }
     }
+}
+
+/// The mean of a texture over a surface, by points of a grid on each piece.
+fn mean_over(pieces: &[Primitive], texture: Handle<Texture>, lookup: Lookup<'_>) -> Rgb {
+    // Some thousands in all, and on each at least four.
+    let side = ((4096 / pieces.len()) as f32).sqrt().clamp(2.0, 64.0) as u32;
+    let (mut sum, mut area) = ([0.0f64; 3], 0.0);
+    for piece in pieces {
+        let share = f64::from(piece.area()) / f64::from(side * side);
+        for i in 0..side * side {
+            let u = (Vec2::new((i % side) as f32, (i / side) as f32) + 0.5) / side as f32;
+            let value = lookup.textures.eval(texture, piece.sample(u, lookup.meshes).uv).to_array();
+            sum.iter_mut().zip(value).for_each(|(s, v)| *s += share * f64::from(v));
+            area += share;
+        }
+    }
+    Rgb::from(sum.map(|s| (s / area) as f32))
 }

@@ -3,6 +3,7 @@ use std::f32::consts::PI;
 use super::aim::{Cones, Disks, Targets};
 use super::area::AreaEmitter;
 use super::environment::{ConstantSky, EnvironmentMap, Sun};
+use super::extent::{Extent, NormalCone};
 use super::glow::Glow;
 use super::goniometric::Goniometric;
 use super::projector::Projector;
@@ -269,6 +270,24 @@ impl Emitter {
             | EmitterKind::Constant(_)
             | EmitterKind::Environment(_)
             | EmitterKind::Sun(_) => None,
+        }
+    }
+
+    /// Where it is and where to it shines; `None` if it is infinitely far away, or cannot be asked for light.
+    pub fn extent(&self, lookup: Lookup<'_>) -> Option<Extent> {
+        let power = self.power.mean();
+        let point = |position, cone| Some(Extent::of_point(position, cone, power));
+        match &self.kind {
+            EmitterKind::Area(area) => Some(area.extent(lookup, power)),
+            EmitterKind::Point { position, .. } => point(*position, NormalCone::SPHERE),
+            EmitterKind::Spot(spot) => point(spot.position, spot.beam()),
+            EmitterKind::Goniometric(lamp) => point(lamp.position, NormalCone::SPHERE),
+            EmitterKind::Projector(lamp) => point(lamp.position, lamp.beam()),
+            EmitterKind::Directional { .. }
+            | EmitterKind::Constant(_)
+            | EmitterKind::Environment(_)
+            | EmitterKind::Sun(_)
+            | EmitterKind::Medium(_) => None,
         }
     }
 

@@ -5,14 +5,22 @@ mod aim;
 mod area;
 mod emitter;
 mod environment;
+mod extent;
 mod glow;
 mod goniometric;
 mod projector;
+mod sky;
 mod sphere_image;
 mod spot;
+mod tiles;
+mod tree;
 
 #[cfg(test)]
+mod emission_tests;
+#[cfg(test)]
 mod sampling_tests;
+#[cfg(test)]
+mod tree_tests;
 
 pub(crate) use aim::{Ball, MAX_BALLS, Targets};
 pub(crate) use area::AreaEmitter;
@@ -22,7 +30,9 @@ pub(crate) use environment::{ConstantSky, EnvironmentMap, Sun};
 pub(crate) use glow::{Glow, Lattice};
 pub(crate) use goniometric::Goniometric;
 pub(crate) use projector::Projector;
+pub use sky::{SkySettings, sun_sky};
 pub(crate) use spot::Spot;
+pub(crate) use tree::{Asker, LightTree};
 
 use crate::camera::FovAxis;
 use crate::color::Rgb;

@@ -1,8 +1,10 @@
 use super::ProjectorUnit;
 use super::aim::{Cones, Targets, overlaps};
 use super::emitter::{Emission, EmissionNumbers};
+use super::extent::NormalCone;
 use crate::color::Rgb;
 use crate::handle::Handle;
+use crate::math::real::atan2;
 use crate::math::{Frame, Ray, Transform, Vec2, Vec3};
 use crate::sampling::Discrete2d;
 use crate::texture::{Pixmap, Textures, Wrap};
@@ -101,6 +103,11 @@ impl Projector {
         let (i, j) = (low.x as i64, low.y as i64);
         let row = |j| texel(image, i, j) * (1.0 - part.x) + texel(image, i + 1, j) * part.x;
         row(j) * (1.0 - part.y) + row(j + 1) * part.y
+    }
+
+    /// The directions that it shines into, and those between them and a round edge.
+    pub fn beam(&self) -> NormalCone {
+        NormalCone::of_beam(self.frame.n, atan2(self.half.length(), 1.0))
     }
 
     /// W: the integral of the intensity, of which what is read between pixels counts for the pixels.

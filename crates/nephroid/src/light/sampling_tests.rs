@@ -1,7 +1,7 @@
 //! Light as sampled from a point against the density claimed for it, by χ² tests. They share the level
 //! `ALPHA` by Šidák's formula: on seeds chosen afresh, correct code would fail with probability 1 %.
 
-use nephroid_testkit::{ALPHA, Outcome, Pcg32, SphereTest, sidak};
+use nephroid_testkit::{ALPHA, MeanTest, Outcome, Pcg32, SphereTest, sidak};
 
 use super::{EnvironmentMapping, Light, LightKind};
 use crate::camera::{Camera, FovAxis, Projection};
@@ -9,12 +9,12 @@ use crate::color::Rgb;
 use crate::film::{FilmSettings, Filter};
 use crate::handle::Arena;
 use crate::material::Material;
-use crate::math::{DVec3, Ray, Transform, Vec2, Vec3};
+use crate::math::{Affine2, DVec3, Ray, Transform, Vec2, Vec3};
 use crate::medium::Boundary;
 use crate::medium::Media;
 use crate::scene::Scene;
 use crate::shape::{Geometry, Mesh, Shape};
-use crate::texture::{Image, Pixmap, Textures};
+use crate::texture::{Bitmap, BitmapFilter, Image, Pixmap, Texture, Textures, Wrap};
 use crate::world::World;
 
 /// More than the tests of this file.
@@ -120,6 +120,50 @@ fn surfaces_are_sampled_with_the_density_they_claim() {
     }
 }
 
+/// A bitmap for a lamp that is all but black beside a bright corner.
+#[test]
+fn textured_lamps_are_sampled_where_they_are_bright() {
+    let to_world = Transform::rotate(DVec3::new(1.0, 0.5, 0.2), 200.0)
+        .then(Transform::translate(DVec3::new(0.1, -0.2, 1.2)));
+    let world = screen(to_world);
+    test("a textured square", &world, 9, |wi| pdf_of_surface(&world, wi));
+    // All that it gives off to the side, by points uniform and by brightness, to 2 %: five standard errors.
+    let emitter = &world.emitters()[0];
+    let (mut by_light, mut evenly) = (MeanTest::new(), MeanTest::new());
+    let mut rng = Pcg32::new(10);
+    for _ in 0..20_000 {
+        let u = Vec2::from_array(rng.vec2_f32());
+        let incident = emitter.sample_incident(world.lookup(), Vec3::ZERO, u);
+        by_light.push(incident.map_or(0.0, |i| f64::from(i.radiance.mean() / i.pdf_solid_angle)));
+        let wi = crate::math::warp::square_to_sphere(u);
+        let hit = world.intersect(&Ray::new(Vec3::ZERO, wi));
+        let seen = hit.and_then(|hit| world.emitted(&hit, -wi)).map_or(0.0, |(_, seen)| seen.mean());
+        evenly.push(4.0 * std::f64::consts::PI * f64::from(seen));
+    }
+    judge("a textured square", &by_light.welch(&evenly));
+    assert!(by_light.variance() < 0.3 * evenly.variance());
+}
+
+fn screen(to_world: Transform) -> World {
+    let mut scene = empty();
+    let black = scene.textures.constant(Rgb::BLACK);
+    let mut image = Image::filled(6, 4, Rgb::splat(0.05));
+    image.pixels[7] = Rgb::new(9.0, 3.0, 1.0);
+    image.pixels[22] = Rgb::new(1.0, 4.0, 1.0);
+    let image = scene.textures.images.push(image.into());
+    let bitmap = Bitmap {
+        image,
+        filter: BitmapFilter::Bilinear,
+        wrap: Wrap::Clamp,
+        to_uv: Affine2::from_scale(Vec2::new(1.5, 0.8)),
+    };
+    let emission = Some(scene.textures.push(Texture::Bitmap(bitmap)));
+    let material = scene.materials.push(Material::Diffuse { reflectance: black });
+    let shape = Shape::new("screen", Geometry::Rectangle, material);
+    scene.shapes.push(Shape { to_world, emission, ..shape });
+    World::new(scene).expect("a sound scene")
+}
+
 fn sky(kind: LightKind, images: &[Image]) -> World {
     let mut scene = empty();
     for image in images {
@@ -153,4 +197,18 @@ fn skies_are_sampled_with_the_density_they_claim() {
         let world = sky(kind, std::slice::from_ref(&image));
         test("an environment", &world, seed, |wi| world.emitters()[0].pdf_of_sky(wi));
     }
+
+    let image = Image { width: 5, height: 5, pixels: image.pixels[..25].to_vec() };
+    let turn = Transform::rotate(DVec3::new(0.3, 1.0, -0.5), 100.0);
+    for (seed, to_world) in [(23, Transform::IDENTITY), (24, turn)] {
+        let mapping = EnvironmentMapping::EqualArea;
+        let kind = LightKind::Environment { image: handle, mapping, scale: 2.0, to_world };
+        let world = sky(kind, std::slice::from_ref(&image));
+        test("a square environment", &world, seed, |wi| world.emitters()[0].pdf_of_sky(wi));
+    }
+
+    let (direction, irradiance) = (Vec3::new(0.5, -0.2, 0.4), Rgb::WHITE);
+    let kind = LightKind::Sun { direction, irradiance, angular_radius_deg: 35.0 };
+    let world = sky(kind, &[]);
+    test("a sun", &world, 25, |wi| world.emitters()[0].pdf_of_sky(wi));
 }

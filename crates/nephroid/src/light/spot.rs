@@ -2,6 +2,7 @@ use std::f32::consts::PI;
 
 use super::aim::{Cones, Targets, overlaps};
 use super::emitter::{Emission, EmissionNumbers};
+use super::extent::NormalCone;
 use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::math::real::{atan2, cos, sin, tan};
@@ -58,6 +59,11 @@ impl Spot {
             textures.eval(texture, Vec2::new(0.5 + local.x * scale, 0.5 + local.y * scale))
         });
         self.peak * tint * falloff
+    }
+
+    /// The directions that it shines into.
+    pub fn beam(&self) -> NormalCone {
+        NormalCone::of_beam(self.frame.n, self.cutoff)
     }
 
     /// The part of a ray up to `end` inside the cone, whose points p have (p − a)·n ≥ |p − a| cos θ: a quadratic in

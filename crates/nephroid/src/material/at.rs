@@ -39,7 +39,14 @@ impl Material {
                         back
                     }
                     Self::TwoSided { front, .. } => front,
-                    Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => inside,
+                    Self::NormalMap { normals, scale, inside } => {
+                        surface = surface.mapped(textures, normals, scale);
+                        inside
+                    }
+                    Self::BumpMap { heights, scale, inside } => {
+                        surface = surface.raised(textures, heights, scale);
+                        inside
+                    }
                     Self::Blend { weight, first, second } => {
                         if textures.eval(weight, surface.at).mean() > 0.5 { second } else { first }
                     }

@@ -20,6 +20,9 @@ mod principled;
 mod roughness;
 mod split;
 mod surface;
+mod tilt;
+#[cfg(test)]
+mod tilt_tests;
 
 pub(crate) use bsdf::segments_by;
 pub use bsdf::{Bsdf, BsdfSample, Transport};

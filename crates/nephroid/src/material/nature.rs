@@ -1,6 +1,6 @@
 //! What can be told of a material without looking at a surface.
 
-use super::Material;
+use super::{Material, Roughness};
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
 use crate::texture::{Texture, Textures};
@@ -28,6 +28,36 @@ impl Material {
             | Self::DiffuseTransmission { .. }
             | Self::Principled(_)
             | Self::MetallicRoughness(_)
+            | Self::Null => false,
+        }
+    }
+
+    /// Whether a material asks in which directions the texture coordinates of a surface go.
+    pub(crate) fn is_oriented(materials: &Arena<Self>, material: Handle<Self>, textures: &Textures) -> bool {
+        let differs = |r: &Roughness| r.alpha_u != r.alpha_v;
+        let is_none = |texture: Handle<Texture>| textures.list[texture] == Texture::Constant(Rgb::BLACK);
+        let part = |part: Handle<Self>| Self::is_oriented(materials, part, textures);
+        match &materials[material] {
+            Self::NormalMap { .. } | Self::BumpMap { .. } => true,
+            Self::RoughConductor { roughness, .. } | Self::RoughDielectric { roughness, .. } => {
+                differs(roughness)
+            }
+            Self::Plastic { roughness, .. } => roughness.as_ref().is_some_and(differs),
+            Self::CoatedConductor { roughness, coat_roughness, .. } => {
+                [roughness, coat_roughness].into_iter().flatten().any(differs)
+            }
+            Self::Principled(principled) => !is_none(principled.anisotropic),
+            Self::MetallicRoughness(gltf) => !is_none(gltf.anisotropy),
+            Self::TwoSided { front: first, back: second } | Self::Blend { first, second, .. } => {
+                part(*first) || part(*second)
+            }
+            Self::Mask { inside, .. } | Self::Dispersive { inside, .. } => part(*inside),
+            Self::Diffuse { .. }
+            | Self::Phong { .. }
+            | Self::Conductor { .. }
+            | Self::Dielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::DiffuseTransmission { .. }
             | Self::Null => false,
         }
     }

@@ -19,6 +19,19 @@ impl Frame {
         Self { s, t, n }
     }
 
+    /// The frame of a unit normal whose first tangent is as near to a direction as can be; `None` if that is along
+    /// the normal or has no length.
+    #[inline]
+    pub fn along(n: Vec3, direction: Vec3) -> Option<Self> {
+        let direction = direction.try_normalize()?;
+        let across = direction - n * n.dot(direction);
+        // Rounding alone leaves as much of what is along the normal.
+        let s = across.try_normalize().filter(|_| across.length_squared() > 1e-10)?;
+        // Once more, for what little there was may not be square.
+        let s = (s - n * n.dot(s)).normalize();
+        Some(Self { s, t: n.cross(s), n })
+    }
+
     /// Turned the shortest way until the normal is `n`, which must not be opposite to it.
     #[must_use]
     pub fn turned_to(&self, n: Vec3) -> Self {
@@ -66,6 +79,20 @@ mod tests {
             assert!((f.s.cross(f.t) - n).length() < 1e-6);
             let v = Vec3::new(0.3, -0.5, 0.8);
             assert!((f.to_local(f.to_world(v)) - v).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_frame_along_a_direction_is_one() {
+        for i in 1..1000 {
+            let u = |k: f32| Vec2::new((i as f32 * k).fract(), i as f32 / 1000.0);
+            let (n, d) = (warp::square_to_sphere(u(0.618_034)), warp::square_to_sphere(u(0.37)));
+            for d in [d * 1e-12, d * 1e12, n + 1e-4 * n.any_orthonormal_vector()] {
+                let f = Frame::along(n, d).expect("not along the normal");
+                assert!(f.s.dot(f.t).abs() < 1e-6 && f.s.dot(n).abs() < 1e-6 && f.s.dot(d) > 0.0);
+                assert!((f.s.cross(f.t) - n).length() < 1e-6);
+            }
+            assert!(Frame::along(n, n * 3.0).is_none() && Frame::along(n, Vec3::ZERO).is_none());
         }
     }
 

@@ -78,6 +78,14 @@ impl Cylinder {
         }
     }
 
+    /// How the position changes with `u` and `v`.
+    pub fn tangents(&self, uv: Vec2) -> [Vec3; 2] {
+        const TURN: f32 = 2.0 * std::f32::consts::PI;
+        let (sin, cos) = crate::math::real::sin_cos(TURN * uv.x);
+        let around = self.frame.t * cos - self.frame.s * sin;
+        [around * (TURN * self.radius), self.frame.n * self.height]
+    }
+
     pub fn bounds(&self) -> Bounds {
         let a = self.frame.n;
         let reach = (Vec3::ONE - a * a).to_array().map(|s| s.max(0.0).sqrt() * self.radius);

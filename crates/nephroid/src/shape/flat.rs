@@ -74,6 +74,11 @@ impl Flat {
         })
     }
 
+    /// Whether it is a parallelogram, whose texture coordinates are those of its sampled points.
+    pub fn is_rectangle(&self) -> bool {
+        self.region == Region::Square
+    }
+
     pub fn intersect(&self, ray: &Ray) -> Option<Intersection> {
         let t = (self.center - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         if !(t > 0.0 && t < ray.t_max) {
@@ -98,6 +103,19 @@ impl Flat {
             ng: self.normal,
             ns: self.normal,
             uv: self.uv(hit.u, hit.v),
+        }
+    }
+
+    /// How the position changes with `u` and `v` where the hit has these coordinates.
+    pub fn tangents(&self, x: f32, y: f32) -> [Vec3; 2] {
+        let Self { edge_x, edge_y, .. } = *self;
+        match self.region {
+            Region::Square | Region::Plane => [edge_x * 2.0, edge_y * 2.0],
+            Region::Disk => {
+                let out = Vec2::new(x, y).try_normalize().unwrap_or(Vec2::X);
+                let turn = (edge_y * x - edge_x * y) * (2.0 * std::f32::consts::PI);
+                [edge_x * out.x + edge_y * out.y, turn]
+            }
         }
     }
 

@@ -1,5 +1,5 @@
 use crate::color::Rgb;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Transform, Vec2, Vec3};
 
 /// Triangles over shared vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +17,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Goes to its place, still counter-clockwise where the transform mirrors.
+    pub(crate) fn place(&mut self, to_world: &Transform) {
+        self.positions.iter_mut().for_each(|p| *p = to_world.point(*p));
+        self.normals.iter_mut().for_each(|n| *n = to_world.normal(*n));
+        if to_world.is_mirrored() {
+            self.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        }
+    }
+
     /// The colour on a triangle where its second and third vertex have the weights `u` and `v`.
     pub(crate) fn color(&self, triangle: u32, u: f32, v: f32) -> Rgb {
         if self.colors.is_empty() {

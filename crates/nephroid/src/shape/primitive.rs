@@ -2,7 +2,7 @@ use super::cylinder::Cylinder;
 use super::flat::{Flat, Region};
 use super::triangle::Triangle;
 use super::{Geometry, Intersection, Mesh, Shape, ShearedRay, Sphere, SurfacePoint};
-use crate::math::{Bounds, Ray, Vec2, offset_origin};
+use crate::math::{Bounds, Ray, Vec2, Vec3, offset_origin};
 
 /// A piece of a shape in world space: what rays are tested against.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +69,16 @@ impl Primitive {
         }
     }
 
+    /// How the position changes with the texture coordinates `uv` of a hit, which has the coordinates `u` and `v`.
+    pub fn tangents(&self, (u, v): (f32, f32), uv: Vec2, meshes: &[Mesh]) -> [Vec3; 2] {
+        match self {
+            Self::Sphere(s) => s.tangents(uv),
+            Self::Flat(f) => f.tangents(u, v),
+            Self::Cylinder(c) => c.tangents(uv),
+            Self::Triangle(t) => t.tangents(&meshes[t.mesh as usize]),
+        }
+    }
+
     /// Empty for an infinite plane.
     pub fn bounds(&self) -> Bounds {
         match self {
@@ -106,7 +116,7 @@ mod tests {
     use crate::color::Rgb;
     use crate::handle::Arena;
     use crate::material::Material;
-    use crate::math::{DVec3, Transform, Vec3, offset_origin, warp};
+    use crate::math::{DVec3, Transform, offset_origin, warp};
     use crate::sampling::{Key, Sampler, Sequence, Stream};
     use crate::texture::Textures;
 

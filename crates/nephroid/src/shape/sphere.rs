@@ -1,6 +1,6 @@
 use super::flat::turns;
 use super::{Intersection, SurfacePoint};
-use crate::math::real::acos;
+use crate::math::real::{acos, sin_cos};
 use crate::math::{Bounds, Frame, Ray, Transform, Vec2, Vec3, gamma, warp};
 
 /// A sphere in world space.
@@ -59,6 +59,15 @@ impl Sphere {
         }
     }
 
+    /// How the position changes with `u` and `v`; the former vanishes at the poles.
+    pub fn tangents(&self, uv: Vec2) -> [Vec3; 2] {
+        use std::f32::consts::PI;
+        let ((sin, cos), (sin_phi, cos_phi)) = (sin_cos(PI * uv.y), sin_cos(2.0 * PI * uv.x));
+        let [x, y, z] = self.axes;
+        let (out, around) = (x * cos_phi + y * sin_phi, y * cos_phi - x * sin_phi);
+        [around * (2.0 * PI * self.radius * sin), (out * cos - z * sin) * (PI * self.radius)]
+    }
+
     pub fn bounds(&self) -> Bounds {
         let r = Vec3::splat(self.radius * (1.0 + gamma(4)));
         Bounds { min: self.center - r, max: self.center + r }
@@ -95,7 +104,7 @@ impl Sphere {
         let frame = Frame::from_normal(to_center / distance);
         let x = u.x * one_minus_cos;
         let sin_sq = x * (2.0 - x);
-        let (sin_phi, cos_phi) = crate::math::real::sin_cos(2.0 * std::f32::consts::PI * u.y);
+        let (sin_phi, cos_phi) = sin_cos(2.0 * std::f32::consts::PI * u.y);
         // The angle at the centre between the direction back to `p` and the point, from the law of
         // sines; measured so, the point lies on the near side.
         let reach = (self.radius * self.radius - distance * distance * sin_sq).max(0.0).sqrt();

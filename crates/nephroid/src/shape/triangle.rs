@@ -151,6 +151,24 @@ impl Triangle {
         }
     }
 
+    /// How the position changes with the texture coordinates; zero where they lie on a line.
+    pub fn tangents(&self, mesh: &Mesh) -> [Vec3; 2] {
+        let edges = [self.p[1] - self.p[0], self.p[2] - self.p[0]];
+        if mesh.uvs.is_empty() {
+            return edges;
+        }
+        let [a, b, c] = mesh.triangles[self.index as usize].map(|i| mesh.uvs[i as usize]);
+        let (b, c) = (b - a, c - a);
+        // They may be tiny, and their product is not to vanish.
+        let determinant = f64::from(b.x) * f64::from(c.y) - f64::from(b.y) * f64::from(c.x);
+        let solved = |of_b: f32, of_c: f32| {
+            let (b, c) = (f64::from(of_b) / determinant, f64::from(of_c) / determinant);
+            (edges[0].as_dvec3() * b + edges[1].as_dvec3() * c).as_vec3()
+        };
+        let tangents = [solved(c.y, -b.y), solved(-c.x, b.x)];
+        if tangents.iter().all(|t| t.is_finite()) { tangents } else { [Vec3::ZERO; 2] }
+    }
+
     pub fn bounds(&self) -> Bounds {
         Bounds::of(self.p)
     }

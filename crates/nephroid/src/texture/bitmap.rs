@@ -71,6 +71,33 @@ impl Bitmap {
         self.read(image, uv, 0.0, |x, y| image.opacity(x, y))
     }
 
+    /// How the colour changes with `u` and with `v`, read bilinearly.
+    pub fn gradient(&self, image: &Pixmap, uv: Vec2) -> [Rgb; 2] {
+        let size = Vec2::new(image.width as f32, image.height as f32);
+        let p = self.to_uv.transform_point2(uv) * size - Vec2::splat(0.5);
+        if !p.is_finite() {
+            return [Rgb::BLACK; 2];
+        }
+        let (corner, part) = (p.floor(), p - p.floor());
+        let (i, j) = (corner.x as i64, corner.y as i64);
+        let at = |x: i64, y: i64| self.pixel(image, i + x, j + y, Rgb::BLACK, |x, y| image.pixel(x, y));
+        let [[a, b], [c, d]] = [[at(0, 0), at(1, 0)], [at(0, 1), at(1, 1)]];
+        let across = ((b - a) * (1.0 - part.y) + (d - c) * part.y) * size.x;
+        let down = ((c - a) * (1.0 - part.x) + (d - b) * part.x) * size.y;
+        let to_uv = self.to_uv.matrix2;
+        [to_uv.x_axis, to_uv.y_axis].map(|axis| across * axis.x + down * axis.y)
+    }
+
+    /// A pixel that may lie outside.
+    #[inline(always)]
+    fn pixel<T>(&self, image: &Pixmap, x: i64, y: i64, nothing: T, pixel: impl Fn(u32, u32) -> T) -> T {
+        let outside = |i: i64, size: u32| i < 0 || i >= i64::from(size);
+        if self.wrap == Wrap::Black && (outside(x, image.width) || outside(y, image.height)) {
+            return nothing;
+        }
+        pixel(self.wrap.index(x, image.width), self.wrap.index(y, image.height))
+    }
+
     #[inline(always)]
     fn read<T>(&self, image: &Pixmap, uv: Vec2, nothing: T, pixel: impl Fn(u32, u32) -> T) -> T
     where
@@ -80,13 +107,7 @@ impl Bitmap {
         if !p.is_finite() {
             return nothing;
         }
-        let at = |x: i64, y: i64| {
-            let outside = |i: i64, size: u32| i < 0 || i >= i64::from(size);
-            if self.wrap == Wrap::Black && (outside(x, image.width) || outside(y, image.height)) {
-                return nothing;
-            }
-            pixel(self.wrap.index(x, image.width), self.wrap.index(y, image.height))
-        };
+        let at = |x: i64, y: i64| self.pixel(image, x, y, nothing, &pixel);
         match self.filter {
             BitmapFilter::Nearest => at(p.x.floor() as i64, p.y.floor() as i64),
             BitmapFilter::Bilinear => {

@@ -62,6 +62,38 @@ impl Textures {
         }
     }
 
+    /// How the colour at a point changes with `u` and with `v`, by the rules of differentiation; a bitmap as if it were
+    /// read bilinearly. Steps, opacities and the colours of vertices count as if they were level.
+    pub fn gradient(&self, texture: Handle<Texture>, at: impl Into<TexturePoint>) -> [Rgb; 2] {
+        self.slopes(texture, &at.into())
+    }
+
+    fn slopes(&self, texture: Handle<Texture>, at: &TexturePoint) -> [Rgb; 2] {
+        match &self.list[texture] {
+            Texture::Constant(_) | Texture::VertexColor | Texture::Channel { channel: 3, .. } => {
+                [Rgb::BLACK; 2]
+            }
+            Texture::Bitmap(bitmap) => bitmap.gradient(&self.images[bitmap.image], at.uv),
+            Texture::Checkerboard(board) => self.slopes(board.child(at.uv), at),
+            Texture::Scale { a, b } => {
+                let (value_a, value_b) = (self.color(*a, at), self.color(*b, at));
+                let (a, b) = (self.slopes(*a, at), self.slopes(*b, at));
+                [0, 1].map(|i| a[i] * value_b + value_a * b[i])
+            }
+            Texture::Mix { weight, a, b } => {
+                let value = self.color(*weight, at);
+                let apart = self.color(*b, at) - self.color(*a, at);
+                let (weight, a, b) = (self.slopes(*weight, at), self.slopes(*a, at), self.slopes(*b, at));
+                // Where the weight is cut off it does not change.
+                let inside = value.map(|w| f32::from(w > 0.0 && w < 1.0));
+                [0, 1].map(|i| mixed(value, a[i], b[i]) + weight[i] * inside * apart)
+            }
+            Texture::Channel { of, channel } => {
+                self.slopes(*of, at).map(|slope| Rgb::splat(channel_of(slope, *channel)))
+            }
+        }
+    }
+
     /// The mean over the parameter square, exact for constants, whole images and what is linear in them. Products
     /// and mixtures of two textures that vary together have another. Vertex colours count as half.
     pub fn mean(&self, texture: Handle<Texture>) -> Rgb {
@@ -207,6 +239,48 @@ mod tests {
         let sure = t.push(Texture::Mix { weight: b, a, b: weight });
         assert_eq!(t.eval(sure, RIGHT), t.eval(weight, RIGHT));
         assert_eq!(t.opacity(sure, RIGHT), 0.75);
+    }
+
+    /// A bitmap of 5 by 4 pixels, stretched and turned.
+    fn uneven(textures: &mut Textures) -> Handle<Texture> {
+        let value = |i: u32, k: u32| (i * k % 11) as f32 / 10.0;
+        let pixels = (1..=20).map(|i| Rgb::new(value(i, 7), value(i, 5), value(i, 3))).collect();
+        let image = textures.images.push(Image { width: 5, height: 4, pixels }.into());
+        let to_uv = Affine2::from_scale_angle_translation(Vec2::new(1.5, 0.7), 0.4, Vec2::new(0.1, 0.3));
+        let (filter, wrap) = (BitmapFilter::Bilinear, Wrap::Mirror);
+        textures.push(Texture::Bitmap(Bitmap { image, filter, wrap, to_uv }))
+    }
+
+    #[test]
+    fn gradients_are_limits_of_differences() {
+        let mut t = Textures::default();
+        let (a, b) = (t.constant(Rgb::new(0.2, 0.5, 2.0)), uneven(&mut t));
+        let other = t.push(Texture::Scale { a: b, b });
+        let mix = t.push(Texture::Mix { weight: b, a, b: other });
+        let channel = t.push(Texture::Channel { of: mix, channel: 1 });
+        let to_uv = Affine2::from_scale(Vec2::splat(0.4));
+        let board = t.push(Texture::Checkerboard(Checkerboard { color0: mix, color1: b, to_uv }));
+        const H: f32 = 1.0 / 512.0;
+        let mut compared = 0;
+        for texture in [b, other, channel, board] {
+            for i in 0..200 {
+                let uv = Vec2::new((i as f32 * 0.618_034).fract(), (i as f32 * 0.381_1).fract());
+                let ends =
+                    [Vec2::X, Vec2::Y].map(|d| [t.eval(texture, uv - d * H), t.eval(texture, uv + d * H)]);
+                let middle = t.eval(texture, uv);
+                for (slope, [below, above]) in t.gradient(texture, uv).into_iter().zip(ends) {
+                    // Not across an edge between pixels, where one-sided differences disagree.
+                    let bend = (above - middle).zip(middle - below, |a, b| (a - b).abs());
+                    if bend.max_channel() < 2e-5 {
+                        let difference = (above - below) * (0.5 / H);
+                        let off = slope.zip(difference, |a, b| (a - b).abs());
+                        assert!(off.max_channel() < 0.02, "{slope:?} {difference:?} at {uv}");
+                        compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(compared > 500, "{compared}");
     }
 
     #[test]

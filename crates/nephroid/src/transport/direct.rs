@@ -1,6 +1,7 @@
 //! Direct light by next event estimation.
 
 use crate::color::Rgb;
+use crate::light::Asker;
 use crate::material::{Bsdf, LobeKind, Transport};
 use crate::math::Vec3;
 use crate::medium::Phase;
@@ -11,7 +12,7 @@ use crate::world::{Hit, Surroundings, Vantage, World, leave};
 /// Which lights next event estimation asks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirectLights {
-    /// One, by roulette: half by power, half evenly.
+    /// One, by roulette: of a few half by power, half evenly; of many by how much of their light may come.
     #[default]
     One,
     /// Every one.
@@ -147,10 +148,13 @@ pub(crate) fn sample_lights(
     partner: Partner,
     sampler: &mut Sampler,
 ) -> Rgb {
-    let Some(table) = world.lights_for_direct() else { return Rgb::BLACK };
+    if !world.has_lights_to_ask() {
+        return Rgb::BLACK;
+    }
     match lights {
         DirectLights::One => {
-            let (light, probability, _) = table.sample(sampler.next_1d());
+            let asked = world.ask(&lit.vantage().asker(), sampler.next_1d());
+            let Some((light, probability)) = asked else { return Rgb::BLACK };
             one_light(world, lit, light, probability, partner, sampler)
         }
         DirectLights::All => {
@@ -206,7 +210,7 @@ fn sample_bsdf(
 ) -> Rgb {
     let (u, u_lobe) = (sampler.next_2d(), sampler.next_1d());
     let Some(sample) = bsdf.sample(lit.wo, u, u_lobe, Transport::Radiance) else { return Rgb::BLACK };
-    let from = hit.point.position;
+    let from = Asker::on(&hit.point);
     let mut inside = lit.beyond(world, sample.wi);
     let mut ray = leave(&hit.point, sample.wi);
     let (mut seen, mut through) = (Rgb::BLACK, Rgb::WHITE);
@@ -216,11 +220,11 @@ fn sample_bsdf(
             through *= matter.transmittance(&ray, hit.map_or(f32::INFINITY, |h| h.t), sampler);
         }
         let Some(hit) = hit else {
-            seen += through * sky_by_bsdf(world, sample.wi, sample.pdf_solid_angle, lights);
+            seen += through * sky_by_bsdf(world, &from, sample.wi, sample.pdf_solid_angle, lights);
             return sample.weight * seen;
         };
         seen += world.emitted(&hit, -ray.direction).map_or(Rgb::BLACK, |(light, radiance)| {
-            let pdf = light_pdf(world, light, from, &hit.point, lights);
+            let pdf = light_pdf(world, light, &from, &hit.point, lights);
             through * radiance * power_heuristic(sample.pdf_solid_angle, pdf)
         });
         if !world.bsdf_within(&hit, -ray.direction, &inside).is_null() {
@@ -236,29 +240,35 @@ fn sample_bsdf(
 pub(crate) fn light_pdf(
     world: &World,
     light: usize,
-    from: Vec3,
+    from: &Asker,
     point: &SurfacePoint,
     lights: DirectLights,
 ) -> f32 {
-    world.emitters()[light].pdf_of_surface(from, point) * choice(world, light, lights)
+    world.emitters()[light].pdf_of_surface(from.position, point) * choice(world, light, from, lights)
 }
 
-/// Radiance of the sky in a direction sampled from a BSDF, each light weighted by the power heuristic.
-pub(crate) fn sky_by_bsdf(world: &World, direction: Vec3, pdf_bsdf: f32, lights: DirectLights) -> Rgb {
+/// Radiance of the sky in a direction sampled from a BSDF at `from`, each light weighted by the power heuristic.
+pub(crate) fn sky_by_bsdf(
+    world: &World,
+    from: &Asker,
+    direction: Vec3,
+    pdf_bsdf: f32,
+    lights: DirectLights,
+) -> Rgb {
     let textures = &world.scene().textures;
-    let skies = world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky());
-    skies
+    world
+        .skies()
         .map(|(i, emitter)| {
-            let pdf = emitter.pdf_of_sky(direction) * choice(world, i, lights);
+            let pdf = emitter.pdf_of_sky(direction) * choice(world, i, from, lights);
             emitter.sky_radiance(textures, direction) * power_heuristic(pdf_bsdf, pdf)
         })
         .sum()
 }
 
-/// The probability with which next event estimation asks a light.
-pub(crate) fn choice(world: &World, light: usize, lights: DirectLights) -> f32 {
-    match (lights, world.lights_for_direct()) {
-        (DirectLights::One, Some(table)) => table.pmf(light),
-        _ => 1.0,
+/// The probability with which next event estimation at `from` asks a light.
+pub(crate) fn choice(world: &World, light: usize, from: &Asker, lights: DirectLights) -> f32 {
+    match lights {
+        DirectLights::One if world.has_lights_to_ask() => world.chance_of_asking(light, from),
+        DirectLights::One | DirectLights::All => 1.0,
     }
 }

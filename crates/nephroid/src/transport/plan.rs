@@ -95,7 +95,7 @@ impl PhotonPlan {
         }
         let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
         // Light of media makes no caustics, and is indirect from the start.
-        let specular = !too_short && world.has_dirac_surfaces() && world.lights_for_direct().is_some();
+        let specular = !too_short && world.has_dirac_surfaces() && world.has_lights_to_ask();
         let short_enough = !too_short || world.glows();
         let volume = world.has_media() && settings.fog == Fog::Volume;
         let plan = |map| {

@@ -1,5 +1,6 @@
+use super::asking::Asked;
 use super::hues::Hues;
-use super::level::{Item, Level, Other};
+use super::level::{Item, Items, Level, Other};
 use super::nest::ranks;
 use super::placed::Placed;
 use super::scenery::Scenery;
@@ -7,9 +8,10 @@ use super::{Aims, Surfaced, Surroundings, World};
 use crate::bvh::Simd;
 use crate::camera::CameraRays;
 use crate::color::Rgb;
+use crate::handle::Handle;
 use crate::light::{
-    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Goniometric, Light, LightKind, Projector,
-    Spot, Sun, Target,
+    AreaEmitter, ConstantSky, Emitter, EmitterKind, EnvironmentMap, Goniometric, Light, LightKind, Lookup,
+    Projector, Spot, Sun, Target,
 };
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
@@ -24,11 +26,12 @@ impl World {
     ///
     /// # Errors
     /// Every problem that the scene has. After this, rendering cannot fail.
-    pub fn new(scene: Scene) -> Result<Self, SceneErrors> {
+    pub fn new(mut scene: Scene) -> Result<Self, SceneErrors> {
         let problems = scene::check(&scene);
         if !problems.is_empty() {
             return Err(SceneErrors(problems));
         }
+        settle(&mut scene);
         let (scenery, pieces_of_lamps) = scenery(&scene)?;
         let bounds = scenery.bounds();
 
@@ -36,11 +39,12 @@ impl World {
         let (center, radius) = bounds.with(camera.position()).bounding_sphere();
         // Infinite planes alone have no bounds; any size will do for light that only comes straight.
         let radius = if radius > 0.0 { radius } else { 1.0 };
+        let lookup = Lookup { meshes: scenery.meshes.as_slice(), textures: &scene.textures };
         let (emitters, lamps, emitter_of_shape) =
-            emitters(&scene, pieces_of_lamps, Target { center, radius });
+            emitters(&scene, pieces_of_lamps, lookup, Target { center, radius });
         let aims = Aims::new(&scene, &scenery, &emitters, &emitter_of_shape, radius);
         let by_power = Discrete::new(emitters.iter().map(|e| f64::from(e.power.mean())));
-        let for_direct = for_direct(&emitters);
+        let asked = Asked::new(&emitters, lookup);
         let mut surfaces: Vec<Surfaced> = scene
             .all_shapes()
             .enumerate()
@@ -53,6 +57,7 @@ impl World {
                     invisible,
                     masked: Material::is_masked(&scene.materials, s.material) && !invisible,
                     colored: matches!(s.geometry, Geometry::Mesh(mesh) if !scene.meshes[mesh].colors.is_empty()),
+                    oriented: Material::is_oriented(&scene.materials, s.material, &scene.textures),
                     light: s.emission.zip(emitter_of_shape.get(i).copied().flatten()),
                     boundary: s.boundary.is_named().then_some(s.boundary),
                     rank: 0,
@@ -77,10 +82,11 @@ impl World {
             cutouts,
             transparent,
             surface_lights: emitters.len(),
+            skies: (0..).zip(&emitters).filter(|(_, e)| e.is_sky()).map(|(i, _)| i).collect(),
             wide_sky: emitters.iter().any(Emitter::is_wide_sky),
             emitters,
             by_power,
-            for_direct,
+            asked,
             camera,
             hues: dispersive.then(Hues::new).flatten(),
             bounds,
@@ -110,40 +116,40 @@ fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors>
         groups.push(parts.level(scene, &group.shapes, first));
         first += group.shapes.len();
     }
-    let levels: Vec<Level> = groups.into_iter().map(|pieces| parts.build(pieces)).collect();
+    let levels: Vec<Level> = groups.into_iter().map(|pieces| parts.build(scene, pieces, &[])).collect();
 
-    let (mut top, mut instances) = (top, Vec::new());
+    let (mut top, mut instances, mut bounds_of) = (top, Vec::new(), Vec::new());
     for (number, instance) in scene.instances.iter().enumerate() {
         let group = instance.group.index();
         let placed = Placed::new(group as u32, &instance.to_world);
         let bounds = placed.bounds(levels[group].bounds);
         if is_sound(&bounds) {
-            top.finite.push((bounds, Item::Other(Other::Instance(number as u32))));
+            top.finite.push(Item::Other(Other::Instance(number as u32)));
         } else {
             parts.problems.push(nothing_left(Subject::Instance(number)));
         }
+        bounds_of.push(bounds);
         instances.push(placed);
     }
     if !parts.problems.is_empty() {
         return Err(SceneErrors(parts.problems));
     }
-    let top = parts.build(top);
-    let Parts { meshes, mesh_of, primitives, owner, lamps, count, .. } = parts;
-    let simd = Simd::detect();
+    let top = parts.build(scene, top, &bounds_of);
+    let Parts { mesh_of, primitives, owner, lamps, count, .. } = parts;
+    let (simd, meshes) = (Simd::detect(), scene.meshes.clone());
     let scenery = Scenery { meshes, mesh_of, primitives, owner, top, groups: levels, instances, count, simd };
     Ok((scenery, lamps))
 }
 
 /// What a level will be built of.
 struct Pieces {
-    finite: Vec<(Bounds, Item)>,
+    finite: Vec<Item>,
     infinite: Vec<u32>,
 }
 
 /// The parts of a [`Scenery`] while they come together.
 #[derive(Default)]
 struct Parts {
-    meshes: Vec<Mesh>,
     mesh_of: Vec<Option<u32>>,
     primitives: Vec<Primitive>,
     owner: Vec<u32>,
@@ -159,7 +165,7 @@ impl Parts {
         for (number, shape) in (first..).zip(shapes) {
             let before = pieces.finite.len() + pieces.infinite.len();
             let sound = match shape.geometry {
-                Geometry::Mesh(mesh) => self.mesh(&scene.meshes[mesh], shape, number, &mut pieces),
+                Geometry::Mesh(mesh) => self.mesh(scene, mesh, shape, number, &mut pieces),
                 _ => self.primitives(shape, number, &mut pieces),
             };
             let added = pieces.finite.len() + pieces.infinite.len() - before;
@@ -172,11 +178,17 @@ impl Parts {
     }
 
     /// Adds the triangles of a mesh that have an area; false if one is not sound.
-    fn mesh(&mut self, mesh: &Mesh, shape: &Shape, number: usize, pieces: &mut Pieces) -> bool {
-        let at = self.meshes.len() as u32;
+    fn mesh(
+        &mut self,
+        scene: &Scene,
+        mesh: Handle<Mesh>,
+        shape: &Shape,
+        number: usize,
+        pieces: &mut Pieces,
+    ) -> bool {
+        let at = mesh.index() as u32;
         self.mesh_of.push(Some(at));
-        self.meshes.push(placed(mesh, &shape.to_world));
-        let mesh = &self.meshes[at as usize];
+        let mesh = &scene.meshes[mesh];
         let mut lamp = Vec::new();
         let mut sound = true;
         pieces.finite.reserve(mesh.triangles.len());
@@ -187,7 +199,7 @@ impl Parts {
             }
             let bounds = triangle.bounds();
             sound &= is_sound(&bounds);
-            pieces.finite.push((bounds, Item::Triangle { shape: number as u32, index }));
+            pieces.finite.push(Item::Triangle { shape: number as u32, index });
             if shape.emission.is_some() {
                 lamp.push(Primitive::Triangle(triangle));
             }
@@ -208,7 +220,7 @@ impl Parts {
             if bounds.is_empty() {
                 pieces.infinite.push(at);
             } else if is_sound(&bounds) {
-                pieces.finite.push((bounds, Item::Other(Other::Primitive(at))));
+                pieces.finite.push(Item::Other(Other::Primitive(at)));
             } else {
                 return false;
             }
@@ -217,10 +229,11 @@ impl Parts {
         true
     }
 
-    fn build(&self, pieces: Pieces) -> Level {
-        // Only shapes that are meshes have triangles.
-        let mesh = |shape: u32| &self.meshes[self.mesh_of[shape as usize].unwrap_or(0) as usize];
-        Level::new(&pieces.finite, pieces.infinite, &self.primitives, mesh)
+    /// Builds a level, where the instances have these bounds.
+    fn build(&self, scene: &Scene, pieces: Pieces, instances: &[Bounds]) -> Level {
+        let (meshes, mesh_of, primitives) = (scene.meshes.as_slice(), &self.mesh_of, &self.primitives);
+        let items = Items { list: &pieces.finite, meshes, mesh_of, primitives, instances };
+        Level::new(&items, pieces.infinite)
     }
 }
 
@@ -234,35 +247,54 @@ fn is_sound(bounds: &Bounds) -> bool {
     bounds.extent().is_finite() && bounds.area().is_finite()
 }
 
-/// A mesh under a transform, still counter-clockwise where the transform mirrors.
-fn placed(mesh: &Mesh, to_world: &Transform) -> Mesh {
-    let mirrored = to_world.is_mirrored();
-    Mesh {
-        positions: mesh.positions.iter().map(|&p| to_world.point(p)).collect(),
-        normals: mesh.normals.iter().map(|&n| to_world.normal(n)).collect(),
-        uvs: mesh.uvs.clone(),
-        colors: mesh.colors.clone(),
-        triangles: mesh
-            .triangles
-            .iter()
-            .map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] })
-            .collect(),
+/// Puts meshes in their places, so that each is there once: where several shapes show one at different places, all but the
+/// last of them get their own.
+fn settle(scene: &mut Scene) {
+    let Scene { shapes, groups, meshes, .. } = scene;
+    let mut shapes: Vec<&mut Shape> =
+        shapes.iter_mut().chain(groups.iter_mut().flat_map(|group| &mut group.shapes)).collect();
+    // For each mesh the shape whose place it gets: the last, unless one leaves it where it is.
+    let mut heirs: Vec<Option<usize>> = vec![None; meshes.len()];
+    for (number, shape) in shapes.iter().enumerate() {
+        if let Geometry::Mesh(mesh) = shape.geometry {
+            let heir = &mut heirs[mesh.index()];
+            let stays = heir.is_some_and(|heir| shapes[heir].to_world == Transform::IDENTITY);
+            *heir = if stays { *heir } else { Some(number) };
+        }
+    }
+    for (number, shape) in shapes.iter_mut().enumerate() {
+        if let Geometry::Mesh(mesh) = shape.geometry
+            && heirs[mesh.index()] != Some(number)
+            && shape.to_world != Transform::IDENTITY
+        {
+            let mut own = meshes[mesh].clone();
+            own.place(&shape.to_world);
+            shape.to_world = Transform::IDENTITY;
+            shape.geometry = Geometry::Mesh(meshes.push(own));
+        }
+    }
+    for number in heirs.into_iter().flatten() {
+        let shape = &mut shapes[number];
+        if let Geometry::Mesh(mesh) = shape.geometry {
+            meshes.item_mut(mesh).place(&shape.to_world);
+            shape.to_world = Transform::IDENTITY;
+        }
     }
 }
 
 /// The lights of a scene, what each is in the scene, and the light that each shape is.
 type Emitters = (Vec<Emitter>, Vec<Subject>, Vec<Option<u32>>);
 
-fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, target: Target) -> Emitters {
+fn emitters(scene: &Scene, pieces: Vec<Vec<Primitive>>, lookup: Lookup<'_>, target: Target) -> Emitters {
     let (mut emitters, mut lamps) = (Vec::new(), Vec::new());
     let mut of_shape = vec![None; scene.shapes.len()];
     for (i, (shape, pieces)) in scene.shapes.iter().zip(pieces).enumerate() {
         let Some(radiance) = shape.emission else { continue };
         let index = emitters.len() as u32;
         let convex = is_convex(shape).then_some(index);
-        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals, convex) {
+        if let Some(area) = AreaEmitter::new(pieces, radiance, shape.flip_normals, convex, lookup) {
             of_shape[i] = Some(index);
-            let power = area.power(&scene.textures);
+            let power = area.power();
             emitters.push(Emitter { name: shape.name.clone(), kind: EmitterKind::Area(area), power });
             lamps.push(Subject::Shape(i));
         }
@@ -331,13 +363,4 @@ fn emitter(scene: &Scene, light: &Light, target: Target) -> Option<Emitter> {
         }
     };
     Some(Emitter { name: light.name.clone(), kind, power })
-}
-
-/// Half by power, half evenly among the lights that have any. A sky's power is what reaches the bounds
-/// of the scene, of which one place may see little, and power alone would all but never ask the lamp
-/// beside it.
-fn for_direct(emitters: &[Emitter]) -> Option<Discrete> {
-    let powers: Vec<f64> = emitters.iter().map(|e| f64::from(e.power.mean())).collect();
-    let (total, lit) = (powers.iter().sum::<f64>(), powers.iter().filter(|p| **p > 0.0).count() as f64);
-    Discrete::new(powers.iter().map(|&p| if p > 0.0 { 0.5 * p / total + 0.5 / lit } else { 0.0 }))
 }

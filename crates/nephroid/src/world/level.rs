@@ -41,48 +41,70 @@ pub(super) struct Candidate {
     pub piece: Item,
 }
 
-impl Boxes for [(Bounds, Item)] {
+/// Items, whose boxes are reckoned when they are asked for: to keep them would take more than a mesh does.
+pub(super) struct Items<'a> {
+    pub list: &'a [Item],
+    pub meshes: &'a [Mesh],
+    pub mesh_of: &'a [Option<u32>],
+    pub primitives: &'a [Primitive],
+    /// Bounds of the instances.
+    pub instances: &'a [Bounds],
+}
+
+impl<'a> Items<'a> {
+    /// The mesh of a shape that has one: only such shapes have triangles.
+    #[inline]
+    fn mesh(&self, shape: u32) -> &'a Mesh {
+        &self.meshes[self.mesh_of[shape as usize].unwrap_or(0) as usize]
+    }
+}
+
+impl Boxes for Items<'_> {
     fn count(&self) -> u32 {
-        self.len() as u32
+        self.list.len() as u32
     }
 
     #[inline]
     fn get(&self, number: u32) -> Bounds {
-        self[number as usize].0
+        match self.list[number as usize] {
+            Item::Triangle { shape, index } => {
+                let mesh = self.mesh(shape);
+                Bounds::of(mesh.triangles[index as usize].map(|i| mesh.positions[i as usize]))
+            }
+            Item::Other(Other::Primitive(p)) => self.primitives[p as usize].bounds(),
+            Item::Other(Other::Instance(i)) => self.instances[i as usize],
+        }
     }
 }
 
 impl Level {
     /// Over items with bounds, and primitives without any.
-    pub fn new<'a>(
-        items: &[(Bounds, Item)],
-        infinite: Vec<u32>,
-        primitives: &'a [Primitive],
-        mesh: impl Fn(u32) -> &'a Mesh,
-    ) -> Self {
+    pub fn new(items: &Items<'_>, infinite: Vec<u32>) -> Self {
         let (mut triangles, mut flats, mut others) = (Vec::new(), Vec::new(), Vec::new());
         // Most leaves hold more.
-        triangles.reserve(items.len() / 5);
-        let kind = |i: u32| match items[i as usize].1 {
+        triangles.reserve(items.list.len() / 5);
+        let kind = |i: u32| match items.list[i as usize] {
             Item::Triangle { .. } => Kind::Triangles,
-            Item::Other(Other::Primitive(p)) if matches!(primitives[p as usize], Primitive::Flat(_)) => {
+            Item::Other(Other::Primitive(p))
+                if matches!(items.primitives[p as usize], Primitive::Flat(_)) =>
+            {
                 Kind::Flats
             }
             Item::Other(_) => Kind::Other,
         };
         let tree = Tree::build(items, kind, |kind, list| {
-            let members = list.iter().map(|&i| items[i as usize].1);
+            let members = list.iter().map(|&i| items.list[i as usize]);
             let number = match kind {
                 Kind::Triangles => {
                     triangles.push(TriangleBlock::new(members.filter_map(|item| match item {
-                        Item::Triangle { shape, index } => Some((shape, mesh(shape), index)),
+                        Item::Triangle { shape, index } => Some((shape, items.mesh(shape), index)),
                         Item::Other(_) => None,
                     })));
                     triangles.len()
                 }
                 Kind::Flats => {
                     flats.push(FlatBlock::new(members.filter_map(|item| match item {
-                        Item::Other(Other::Primitive(p)) => match &primitives[p as usize] {
+                        Item::Other(Other::Primitive(p)) => match &items.primitives[p as usize] {
                             Primitive::Flat(flat) => Some((p, flat)),
                             _ => None,
                         },
@@ -101,7 +123,7 @@ impl Level {
             number as u32 - 1
         });
         triangles.shrink_to_fit();
-        let bounds = items.iter().fold(Bounds::EMPTY, |all, &(b, _)| all.union(b));
+        let bounds = (0..items.count()).fold(Bounds::EMPTY, |all, i| all.union(items.get(i)));
         Self { tree, triangles, flats, others, infinite, bounds }
     }
 

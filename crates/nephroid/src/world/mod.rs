@@ -1,6 +1,7 @@
 //! The world: a checked scene with everything that rendering needs prepared. Nothing in it changes,
 //! and nothing that is done with it can fail.
 
+mod asking;
 mod build;
 mod cutout;
 #[cfg(test)]
@@ -26,6 +27,7 @@ pub use surroundings::Surroundings;
 pub(crate) use surroundings::Vantage;
 pub(crate) use targets::Aims;
 
+use self::asking::Asked;
 use self::hues::Hues;
 use self::nest::{Rank, Ranked};
 use self::scenery::Scenery;
@@ -34,7 +36,7 @@ use crate::color::Rgb;
 use crate::handle::Handle;
 use crate::light::{Emitter, Lookup};
 use crate::material::{Bsdf, Material, Surface};
-use crate::math::{Bounds, Frame, Ray, Vec2, Vec3, offset_origin};
+use crate::math::{Bounds, Ray, Vec2, Vec3, offset_origin};
 use crate::medium::{Boundary, Matter};
 use crate::sampling::Discrete;
 use crate::scene::{Remark, Scene, Subject};
@@ -53,14 +55,16 @@ pub struct World {
     /// Whether light passes some shape as if it were not there.
     transparent: bool,
     emitters: Vec<Emitter>,
-    /// Whether any of them is a sky of which most directions bring some.
+    /// Those of them that rays which meet nothing see.
+    skies: Vec<u32>,
+    /// Whether any of these is one of which most directions bring some.
     wide_sky: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
     by_power: Option<Discrete>,
-    /// Emitters as next event estimation asks them.
-    for_direct: Option<Discrete>,
+    /// How next event estimation asks emitters.
+    asked: Asked,
     camera: CameraRays,
     /// What paths are taken apart into; `None` if no glass does that.
     hues: Option<Hues>,
@@ -88,6 +92,8 @@ struct Surfaced {
     masked: bool,
     /// Whether it has colours at its vertices.
     colored: bool,
+    /// Whether its material asks for tangents.
+    oriented: bool,
     /// The radiance and number of the light that it is.
     light: Option<(Handle<Texture>, u32)>,
     /// What it lies between, if it names any medium.
@@ -134,7 +140,6 @@ struct Spot {
     u: f32,
     v: f32,
     primitive: u32,
-    #[expect(dead_code, reason = "tangents ask for it")]
     instance: Option<u32>,
 }
 
@@ -194,21 +199,22 @@ impl World {
         self.by_power.as_ref()
     }
 
-    pub(crate) fn lights_for_direct(&self) -> Option<&Discrete> {
-        self.for_direct.as_ref()
-    }
-
     /// What photons are aimed at.
     pub(crate) fn aims(&self) -> &Aims {
         &self.aims
     }
 
     pub(crate) fn lookup(&self) -> Lookup<'_> {
-        Lookup { meshes: &self.scenery.meshes, textures: &self.scene.textures }
+        Lookup { meshes: self.scenery.meshes.as_slice(), textures: &self.scene.textures }
     }
 
     pub(crate) fn camera(&self) -> &CameraRays {
         &self.camera
+    }
+
+    /// The emitters that rays which meet nothing see, with their numbers.
+    pub(crate) fn skies(&self) -> impl Iterator<Item = (usize, &Emitter)> {
+        self.skies.iter().map(|&number| (number as usize, &self.emitters[number as usize]))
     }
 
     /// Whether light comes from a sky, in most directions.
@@ -270,8 +276,12 @@ impl World {
     /// How the surface scatters, seen from the side of `wo` and not from inside of any shape with a priority.
     pub fn bsdf(&self, hit: &Hit, wo: Vec3) -> Bsdf {
         let material = self.surfaces[hit.shape as usize].material;
-        let (frame, at) = (Frame::from_normal(hit.point.ns), self.texture_point(hit));
-        let surface = Surface { ng: hit.point.ng, frame, at };
+        let (SurfacePoint { ng, ns, uv, .. }, at) = (hit.point, self.texture_point(hit));
+        let surface = if self.surfaces[hit.shape as usize].oriented {
+            Surface::oriented(ng, ns, at, self.scenery.tangents(hit.shape, &hit.spot, uv))
+        } else {
+            Surface::new(ng, ns, at)
+        };
         Material::at(&self.scene.materials, material, &self.scene.textures, &surface, wo)
     }
 
@@ -295,7 +305,7 @@ impl World {
 
     /// Radiance that a ray which meets nothing sees, in W/(m²·sr).
     pub fn sky(&self, direction: Vec3) -> Rgb {
-        self.emitters.iter().map(|e| e.sky_radiance(&self.scene.textures, direction)).sum()
+        self.skies().map(|(_, e)| e.sky_radiance(&self.scene.textures, direction)).sum()
     }
 }
 

@@ -45,6 +45,11 @@ impl Placed {
         SurfacePoint { position, error, ng, ns, uv: local.uv }
     }
 
+    /// A direction of the group in the world, without normalising.
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.to_world.transform_vector3(v.as_dvec3()).as_vec3()
+    }
+
     /// By the inverse transpose.
     fn normal(&self, n: Vec3) -> Vec3 {
         (self.to_local.matrix3.transpose() * n.as_dvec3()).normalize_or_zero().as_vec3()

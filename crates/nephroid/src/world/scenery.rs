@@ -1,17 +1,18 @@
-use super::RayHit;
 use super::level::{Candidate, Item, Level, Other, Searcher};
 use super::placed::Placed;
+use super::{RayHit, Spot};
 use crate::bvh::{Lanes, Simd, Work};
 use crate::color::Rgb;
-use crate::math::{Bounds, Ray, Vec2};
+use crate::handle::Arena;
+use crate::math::{Bounds, Ray, Vec2, Vec3};
 use crate::scene::Scene;
 use crate::shape::{Intersection, Mesh, Primitive, SurfacePoint, Triangle};
 
 /// All surfaces of a scene, ready for rays.
 #[derive(Clone, Debug)]
 pub(super) struct Scenery {
-    /// Meshes in the space of the scene, or of their group.
-    pub meshes: Vec<Mesh>,
+    /// Those of the scene, each in the space of the scene or of its group.
+    pub meshes: Arena<Mesh>,
     /// The mesh of each shape that is one; the shapes of groups follow those of the scene.
     pub mesh_of: Vec<Option<u32>>,
     /// What is no triangle.
@@ -56,29 +57,47 @@ impl Scenery {
         let at = Intersection { t: hit.t, u: hit.u, v: hit.v };
         match self.mesh_of[hit.shape as usize] {
             Some(mesh) => {
-                let triangle = Triangle::new(&self.meshes[mesh as usize], mesh, hit.primitive);
-                triangle.surface(&self.meshes[mesh as usize], &at)
+                let triangle = Triangle::new(&self.meshes.as_slice()[mesh as usize], mesh, hit.primitive);
+                triangle.surface(&self.meshes.as_slice()[mesh as usize], &at)
             }
-            None => self.primitives[hit.primitive as usize].surface(ray, &at, &self.meshes),
+            None => self.primitives[hit.primitive as usize].surface(ray, &at, self.meshes.as_slice()),
         }
     }
 
     /// The colour that a mesh has at a place on one of its triangles; white where it has none.
     pub fn color(&self, shape: u32, triangle: u32, at: Vec2) -> Rgb {
         self.mesh_of[shape as usize]
-            .map_or(Rgb::WHITE, |mesh| self.meshes[mesh as usize].color(triangle, at.x, at.y))
+            .map_or(Rgb::WHITE, |mesh| self.meshes.as_slice()[mesh as usize].color(triangle, at.x, at.y))
+    }
+
+    /// How the position changes with the texture coordinates `uv` at a place of a shape.
+    pub fn tangents(&self, shape: u32, spot: &Spot, uv: Vec2) -> [Vec3; 2] {
+        let local = match self.mesh_of[shape as usize] {
+            Some(mesh) => {
+                let own = &self.meshes.as_slice()[mesh as usize];
+                Triangle::new(own, mesh, spot.primitive).tangents(own)
+            }
+            None => {
+                let primitive = &self.primitives[spot.primitive as usize];
+                primitive.tangents((spot.u, spot.v), uv, self.meshes.as_slice())
+            }
+        };
+        match spot.instance {
+            None => local,
+            Some(instance) => local.map(|v| self.instances[instance as usize].vector(v)),
+        }
     }
 
     /// Some point of a shape, in the space of the scene or of its group, without regard to flipped normals.
     pub fn point_on(&self, shape: usize, u_piece: f32, u: Vec2) -> SurfacePoint {
         let pick = |n: usize| ((u_piece * n as f32) as usize).min(n - 1);
         if let Some(number) = self.mesh_of[shape] {
-            let mesh = &self.meshes[number as usize];
+            let mesh = &self.meshes.as_slice()[number as usize];
             let index = pick(mesh.triangles.len()) as u32;
             return Triangle::new(mesh, number, index).sample(mesh, u);
         }
         let pieces = self.pieces(shape);
-        pieces[pick(pieces.len())].sample(u, &self.meshes)
+        pieces[pick(pieces.len())].sample(u, self.meshes.as_slice())
     }
 
     /// The primitives of a shape that is no mesh.
@@ -91,7 +110,7 @@ impl Scenery {
     /// Bounds of a shape in the world, at all places where it is; `None` if it is infinite.
     pub fn bounds_of(&self, shape: usize, scene: &Scene) -> Option<Bounds> {
         let local = match self.mesh_of[shape] {
-            Some(mesh) => Bounds::of(self.meshes[mesh as usize].positions.iter().copied()),
+            Some(mesh) => Bounds::of(self.meshes.as_slice()[mesh as usize].positions.iter().copied()),
             None => self.pieces(shape).iter().try_fold(Bounds::EMPTY, |bounds, piece| {
                 let own = piece.bounds();
                 (!own.is_empty()).then(|| bounds.union(own))

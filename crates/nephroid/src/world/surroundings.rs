@@ -4,7 +4,7 @@ use super::nest::Nest;
 use super::{Hit, RayHit, Surfaced, World, leave};
 use crate::color::{Rgb, Wavelength};
 use crate::handle::Handle;
-use crate::light::Source;
+use crate::light::{Asker, Source};
 use crate::math::{Ray, Vec3, offset_origin};
 use crate::medium::{Boundary, Matter, Medium};
 use crate::sampling::Sampler;
@@ -55,6 +55,14 @@ impl Vantage<'_> {
         match self {
             Self::Surface(point) => point.position,
             Self::Space(position) => *position,
+        }
+    }
+
+    /// As one that asks lights.
+    pub fn asker(&self) -> Asker {
+        match self {
+            Self::Surface(point) => Asker::on(point),
+            Self::Space(position) => Asker::in_space(*position),
         }
     }
 

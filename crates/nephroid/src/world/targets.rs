@@ -60,7 +60,7 @@ impl Aims {
         reach: f32,
     ) -> Self {
         let solids = solids(scene, scenery, emitter_of_shape);
-        let lookup = Lookup { meshes: &scenery.meshes, textures: &scene.textures };
+        let lookup = Lookup { meshes: scenery.meshes.as_slice(), textures: &scene.textures };
         let aim = |targets, selective| Aim::new(emitters, lookup, targets, selective);
         Self {
             specular: solids.iter().any(|solid| solid.specular),
@@ -178,7 +178,7 @@ fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) ->
 /// Of a mesh all triangles only where asked for.
 fn items(scenery: &Scenery, shape: usize, apart: bool) -> (Vec<Item>, Vec<Primitive>) {
     if let Some(mesh) = scenery.mesh_of[shape] {
-        let mesh = &scenery.meshes[mesh as usize];
+        let mesh = &scenery.meshes.as_slice()[mesh as usize];
         if !apart {
             let corners = || mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]);
             return (vec![Item::of_points(corners)], Vec::new());

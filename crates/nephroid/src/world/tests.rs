@@ -164,7 +164,7 @@ fn the_tree_finds_what_trying_every_primitive_finds() {
     let world = World::new(zoo()).unwrap();
     let scenery = &world.scenery;
     let mut pieces = scenery.primitives.clone();
-    for (number, mesh) in (0u32..).zip(&scenery.meshes) {
+    for (number, mesh) in (0u32..).zip(scenery.meshes.as_slice()) {
         pieces.extend(
             (0..mesh.triangles.len() as u32).map(|i| Primitive::Triangle(Triangle::new(mesh, number, i))),
         );

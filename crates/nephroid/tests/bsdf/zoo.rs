@@ -155,7 +155,7 @@ pub fn places() -> Vec<Place> {
         .map(|tilt| {
             let (sin, cos) = real::sin_cos(tilt);
             let n = frame.to_world(Vec3::new(0.6 * sin, 0.8 * sin, cos)).normalize();
-            let surface = Surface { ng, frame: Frame::from_normal(n), at: Vec2::ZERO.into() };
+            let surface = Surface::new(ng, n, Vec2::ZERO);
             Place { surface, flat: tilt == 0.0 }
         })
         .into()

@@ -11,6 +11,7 @@ use crate::color::Rgb;
 use crate::integrator::glances::glance;
 use crate::integrator::photon_mapper::PhotonMapper;
 use crate::integrator::{Components, Estimator, LightPart, Met, Probe};
+use crate::light::Asker;
 use crate::material::{Bsdf, Transport, segments_by};
 use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Passage, PhaseSample};
@@ -197,9 +198,9 @@ impl Camera<'_> {
     /// Leaves the scene.
     fn meet_sky(&self, walk: &mut Walk, out: &mut Components, probe: &mut impl Probe) {
         let (world, direction) = (self.world, walk.ray.direction);
-        for (light, emitter) in world.emitters().iter().enumerate().filter(|(_, e)| e.is_sky()) {
+        for (light, emitter) in world.skies() {
             let radiance = emitter.sky_radiance(&world.scene().textures, direction);
-            let lamp = |from| LampEnd::in_sky(world, light, direction, radiance, from);
+            let lamp = |from: &Asker| LampEnd::in_sky(world, light, direction, radiance, from);
             self.meet(walk, radiance, lamp, out, probe);
         }
     }
@@ -295,7 +296,7 @@ impl Estimator for Camera<'_> {
             };
             let wo = -walk.ray.direction;
             if let Some((light, radiance)) = world.emitted(&hit, wo) {
-                let lamp = |from| LampEnd::on_surface(world, light, &hit.point, radiance, from);
+                let lamp = |from: &Asker| LampEnd::on_surface(world, light, &hit.point, radiance, from);
                 self.meet(&mut walk, radiance, lamp, &mut out, probe);
             }
             walk.length += hit.t;

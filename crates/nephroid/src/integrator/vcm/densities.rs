@@ -1,5 +1,6 @@
 //! The densities along a path, as far as the techniques that could have found it need them.
 
+use crate::light::Asker;
 use crate::math::Vec3;
 
 /// What a path meets at a vertex.
@@ -51,6 +52,15 @@ impl Place {
             Self::Surface { ng, .. } => ng.dot(direction).abs(),
             Self::Medium { sigma_t, .. } => *sigma_t,
             Self::Point { .. } | Self::Distant { .. } => 1.0,
+        }
+    }
+
+    /// As one that asks lights, if it is a place that may.
+    pub fn asker(&self) -> Option<Asker> {
+        match self {
+            Self::Surface { position, ng } => Some(Asker { position: *position, normal: *ng }),
+            Self::Medium { position, .. } => Some(Asker::in_space(*position)),
+            Self::Point { .. } | Self::Distant { .. } => None,
         }
     }
 

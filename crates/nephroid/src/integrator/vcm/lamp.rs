@@ -2,7 +2,7 @@
 
 use super::densities::{Kind, Node, Place};
 use crate::color::Rgb;
-use crate::light::Source;
+use crate::light::{Asker, Source};
 use crate::math::Vec3;
 use crate::shape::SurfacePoint;
 use crate::transport::{DirectLights, choice, light_pdf};
@@ -49,8 +49,14 @@ impl LampEnd {
     }
 
     /// The point of a lamp's surface that is seen from `from`.
-    pub fn on_surface(world: &World, light: usize, point: &SurfacePoint, radiance: Rgb, from: Vec3) -> Self {
-        let to = from - point.position;
+    pub fn on_surface(
+        world: &World,
+        light: usize,
+        point: &SurfacePoint,
+        radiance: Rgb,
+        from: &Asker,
+    ) -> Self {
+        let to = from.position - point.position;
         let distance_sq = to.length_squared();
         let toward = to / distance_sq.sqrt();
         let per_area = point.ng.dot(toward).abs() / distance_sq;
@@ -60,11 +66,11 @@ impl LampEnd {
     }
 
     /// A sky, in the direction in which it is seen from `from`.
-    pub fn in_sky(world: &World, light: usize, direction: Vec3, radiance: Rgb, from: Vec3) -> Self {
-        let chosen = choice(world, light, DirectLights::One);
+    pub fn in_sky(world: &World, light: usize, direction: Vec3, radiance: Rgb, from: &Asker) -> Self {
+        let chosen = choice(world, light, from, DirectLights::One);
         let emitter = &world.emitters()[light];
         let asked = emitter.pdf_of_sky(direction) * chosen;
-        let sent = if emitter.sends_by(from, -direction) { radiance } else { Rgb::BLACK };
+        let sent = if emitter.sends_by(from.position, -direction) { radiance } else { Rgb::BLACK };
         Self::new(world, light, Place::Distant { direction }, false, asked, sent, -direction)
     }
 
@@ -75,14 +81,14 @@ impl LampEnd {
         source: &Source,
         wi: Vec3,
         irradiance: Rgb,
-        from: Vec3,
+        from: &Asker,
     ) -> Self {
-        let chosen = choice(world, light, DirectLights::One);
+        let chosen = choice(world, light, from, DirectLights::One);
         let (place, strength) = match source {
             Source::Point(position) => {
-                (Place::Point { position: *position }, irradiance * from.distance_squared(*position))
+                (Place::Point { position: *position }, irradiance * from.position.distance_squared(*position))
             }
-            _ if world.emitters()[light].sends_by(from, -wi) => {
+            _ if world.emitters()[light].sends_by(from.position, -wi) => {
                 (Place::Distant { direction: wi }, irradiance)
             }
             _ => (Place::Distant { direction: wi }, Rgb::BLACK),
@@ -97,7 +103,7 @@ impl LampEnd {
         light: usize,
         surface: Option<&SurfacePoint>,
         direction: Vec3,
-        from: Vec3,
+        from: &Asker,
     ) -> Option<Self> {
         let emitter = &world.emitters()[light];
         if let Some(point) = surface {
@@ -108,7 +114,7 @@ impl LampEnd {
             let radiance = emitter.sky_radiance(&world.scene().textures, -direction);
             return Some(Self::in_sky(world, light, -direction, radiance, from));
         }
-        let incident = emitter.sample_incident(world.lookup(), from, crate::math::Vec2::ZERO)?;
+        let incident = emitter.sample_incident(world.lookup(), from.position, crate::math::Vec2::ZERO)?;
         Some(Self::dirac(world, light, &incident.source, incident.wi, incident.radiance, from))
     }
 }

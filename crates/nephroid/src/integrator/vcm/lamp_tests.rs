@@ -11,7 +11,7 @@ use crate::camera::{Camera, FovAxis, Projection};
 use crate::color::Rgb;
 use crate::film::{FilmSettings, Filter};
 use crate::handle::{Arena, Handle};
-use crate::light::{EnvironmentMapping, Light, LightKind, Source};
+use crate::light::{Asker, EnvironmentMapping, Light, LightKind, Source};
 use crate::material::Material;
 use crate::math::{DVec3, Ray, Transform, Vec2, Vec3};
 use crate::medium::{Boundary, Media};
@@ -147,6 +147,7 @@ fn said(world: &World, light: usize) -> Vec<f64> {
             let place = (sampler.next_2d() - 0.5).extend(1e-3);
             let hit = world.intersect(&Ray::new(place, Vec3::NEG_Z)).expect("the receiver");
             let (point, from) = (hit.point, hit.point.position);
+            let asker = Asker::on(&point);
             let u = sampler.next_2d();
             let Some(incident) = emitter.sample_incident(world.lookup(), from, u) else { continue };
             let (wi, radiance) = (incident.wi, incident.radiance);
@@ -158,13 +159,13 @@ fn said(world: &World, light: usize) -> Vec<f64> {
             let seen =
                 world.light_through(vantage, Surroundings::default(), wi, &incident.source, &mut sampler);
             let lamp = match &incident.source {
-                source if incident.dirac => LampEnd::dirac(world, light, source, wi, radiance, from),
-                Source::Surface(lit) => LampEnd::on_surface(world, light, lit, radiance, from),
-                _ => LampEnd::in_sky(world, light, wi, radiance, from),
+                source if incident.dirac => LampEnd::dirac(world, light, source, wi, radiance, &asker),
+                Source::Surface(lit) => LampEnd::on_surface(world, light, lit, radiance, &asker),
+                _ => LampEnd::in_sky(world, light, wi, radiance, &asker),
             };
             let [_, here] = Place::Surface { position: from, ng: point.ng }.between(&lamp.place);
             // What is asked of this light alone comes with the density of the point over the chance of the light.
-            let asked = choice(world, light, DirectLights::One);
+            let asked = choice(world, light, &asker, DirectLights::One);
             let exact = emitter.sample_incident(world.lookup(), from, u).map_or(0.0, |i| i.pdf_solid_angle);
             let per_solid_angle = match &lamp.place {
                 Place::Surface { position, ng } => {

@@ -10,7 +10,7 @@ use super::reach::AtFirst;
 use super::weights::{MOST_CONNECTED, Technique, Techniques, Weighed, Whole};
 use crate::color::Rgb;
 use crate::film::Splatter;
-use crate::light::Source;
+use crate::light::{Asker, Source};
 use crate::math::{Vec2, Vec3};
 use crate::observer::Observer;
 use crate::photon_map::{GridTree, NearestList, PhotonIndex};
@@ -174,7 +174,8 @@ impl Walked<'_> {
     /// Comes to a vertex; false if the path has no use.
     fn arrive(&mut self, place: Place, position: Vec3, kind: Kind) -> bool {
         if let Some((light, surface, direction)) = self.start.take() {
-            let lamp = LampEnd::of_start(self.world, light, surface.as_ref(), direction, position);
+            let asker = place.asker().unwrap_or(Asker::in_space(position));
+            let lamp = LampEnd::of_start(self.world, light, surface.as_ref(), direction, &asker);
             let Some(lamp) = lamp else { return false };
             self.trail.begin(lamp.place, lamp.leaving);
             self.trail.nodes.push(lamp.node);

@@ -2,27 +2,24 @@
 //! merged with photons.
 
 use super::camera_paths::{Camera, Walk, book};
-use super::densities::{Node, Place, Trail};
+use super::densities::{Node, Trail};
 use super::lamp::LampEnd;
 use super::light_vertex::LightVertex;
 use super::reach::Reach;
 use super::weights::{MOST_CONNECTED, Technique, Weighed, Whole};
 use crate::color::Rgb;
 use crate::integrator::{Components, Found, LightPart, Probe};
-use crate::light::Source;
+use crate::light::{Asker, Source};
 use crate::material::Bsdf;
-use crate::math::Vec3;
 use crate::photon_map::{MAX_THICKNESS, MIN_NORMAL_COSINE};
 use crate::transport::{Lit, PixelSample};
 use crate::world::Hit;
 
 impl Camera<'_> {
     /// The weight of a lamp that the path meets.
-    fn weight_of_lamp(&self, walk: &mut Walk, lamp: impl FnOnce(Vec3) -> LampEnd) -> Weighed {
-        let (Place::Surface { position, .. } | Place::Medium { position, .. }) = walk.trail.at else {
-            return Weighed::ALONE;
-        };
-        let lamp = lamp(position);
+    fn weight_of_lamp(&self, walk: &mut Walk, lamp: impl FnOnce(&Asker) -> LampEnd) -> Weighed {
+        let Some(asker) = walk.trail.at.asker() else { return Weighed::ALONE };
+        let lamp = lamp(&asker);
         let [there, here] = walk.trail.at.between(&lamp.place);
         let counter = walk.trail.leaving * there;
         if let Some(last) = walk.trail.nodes.last_mut() {
@@ -43,7 +40,7 @@ impl Camera<'_> {
         &self,
         walk: &mut Walk,
         radiance: Rgb,
-        lamp: impl FnOnce(Vec3) -> LampEnd,
+        lamp: impl FnOnce(&Asker) -> LampEnd,
         out: &mut Components,
         probe: &mut impl Probe,
     ) {
@@ -67,8 +64,11 @@ impl Camera<'_> {
         probe: &mut impl Probe,
     ) -> Rgb {
         let (world, sampler, from) = (self.world, &mut sample.sampler, lit.vantage());
-        let Some(table) = world.lights_for_direct() else { return Rgb::BLACK };
-        let (light, probability, _) = table.sample(sampler.next_1d());
+        if !world.has_lights_to_ask() {
+            return Rgb::BLACK;
+        }
+        let asker = from.asker();
+        let Some((light, probability)) = world.ask(&asker, sampler.next_1d()) else { return Rgb::BLACK };
         let u = sampler.next_2d();
         let Some(incident) = world.emitters()[light].sample_incident(world.lookup(), from.position(), u)
         else {
@@ -85,9 +85,9 @@ impl Camera<'_> {
             return Rgb::BLACK;
         }
         let lamp = match &incident.source {
-            source if incident.dirac => LampEnd::dirac(world, light, source, wi, radiance, from.position()),
-            Source::Surface(point) => LampEnd::on_surface(world, light, point, radiance, from.position()),
-            _ => LampEnd::in_sky(world, light, wi, radiance, from.position()),
+            source if incident.dirac => LampEnd::dirac(world, light, source, wi, radiance, &asker),
+            Source::Surface(point) => LampEnd::on_surface(world, light, point, radiance, &asker),
+            _ => LampEnd::in_sky(world, light, wi, radiance, &asker),
         };
         let [there, here] = walk.trail.at.between(&lamp.place);
         set_counters(&mut walk.trail, lamp.leaving * here, lit.pdf_between(wi, lit.wo));

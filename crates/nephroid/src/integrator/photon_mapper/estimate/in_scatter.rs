@@ -7,6 +7,7 @@ use crate::color::Rgb;
 use crate::integrator::photon_mapper::VolumeIndex;
 use crate::integrator::photon_mapper::config::VolumeEstimate;
 use crate::integrator::{FromVolume, MediumLight, Passed, Probe};
+use crate::light::Asker;
 use crate::math::{Ray, Vec3};
 use crate::medium::{Matter, Profile};
 use crate::photon_map::Beam;
@@ -95,10 +96,18 @@ impl PhotonMapper<'_> {
     /// Light scattered once: lights are asked at a point that is sampled by equiangular density for one light
     /// (Kulla and Fajardo 2012, doi 10.1111/j.1467-8659.2012.03148.x) or by transmittance, as a mixture.
     fn single_scatter(&self, segment: &Segment<'_>, profile: &Profile, sampler: &mut Sampler) -> Rgb {
-        let Some(table) = self.world.lights_for_direct() else { return Rgb::BLACK };
+        if !self.world.has_lights_to_ask() {
+            return Rgb::BLACK;
+        }
         match self.config.direct_lights {
             DirectLights::One => {
-                let (light, probability, _) = table.sample(sampler.next_1d());
+                let u = sampler.next_1d();
+                let on_the_way = || {
+                    let t = profile.sample(sampler.next_1d(), 0.0, segment.end);
+                    Asker::in_space(segment.ray.at(t))
+                };
+                let asked = self.world.ask_along(on_the_way, u);
+                let Some((light, probability)) = asked else { return Rgb::BLACK };
                 self.scattered_once(segment, profile, light, probability, sampler)
             }
             DirectLights::All => (0..self.world.light_count())

@@ -5,6 +5,7 @@ use super::{PhotonMapper, Tools, Vertex, Way};
 use crate::color::Rgb;
 use crate::integrator::glances::seen;
 use crate::integrator::{Components, LightPart, LookUp, MapName, Met, Probe};
+use crate::light::Asker;
 use crate::material::{Bsdf, BsdfSample, LobeKind, Transport, segments_by};
 use crate::math::Vec3;
 use crate::sampling::{Sampler, power_heuristic};
@@ -55,7 +56,7 @@ enum Lamps {
     /// All.
     Whole,
     /// What they leave to a direction that was sampled with a density where they were asked for, too.
-    Shared { from: Vec3, pdf_solid_angle: f32 },
+    Shared { from: Asker, pdf_solid_angle: f32 },
 }
 
 /// A path from the camera.
@@ -191,7 +192,7 @@ impl PhotonMapper<'_> {
             LobeKind::Dirac if self.glances && !sharp => Lamps::Glanced,
             LobeKind::Dirac => Lamps::Whole,
             LobeKind::Sharp | LobeKind::Broad => {
-                Lamps::Shared { from: hit.point.position, pdf_solid_angle: next.pdf_solid_angle }
+                Lamps::Shared { from: Asker::on(&hit.point), pdf_solid_angle: next.pdf_solid_angle }
             }
         }
     }
@@ -209,12 +210,12 @@ impl PhotonMapper<'_> {
         let light = match (track.lamps, hit) {
             (Lamps::Glanced, _) => return,
             (Lamps::Whole, _) => seen(self.world, hit, wo),
-            (Lamps::Shared { pdf_solid_angle, .. }, None) => {
-                sky_by_bsdf(self.world, -wo, pdf_solid_angle, lights)
+            (Lamps::Shared { from, pdf_solid_angle }, None) => {
+                sky_by_bsdf(self.world, &from, -wo, pdf_solid_angle, lights)
             }
             (Lamps::Shared { from, pdf_solid_angle }, Some(hit)) => {
                 self.world.emitted(hit, wo).map_or(Rgb::BLACK, |(light, radiance)| {
-                    let pdf = light_pdf(self.world, light, from, &hit.point, lights);
+                    let pdf = light_pdf(self.world, light, &from, &hit.point, lights);
                     radiance * power_heuristic(pdf_solid_angle, pdf)
                 })
             }
