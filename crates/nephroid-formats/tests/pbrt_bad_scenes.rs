@@ -343,7 +343,7 @@ fn materials_textures_and_colours() {
     );
     check(
         "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"text.png\"",
-        "s.pbrt:2:51: error: \"text.png\" is of no format that is known here; images can be OpenEXR, PNG, JPEG or Radiance HDR files",
+        "s.pbrt:2:51: error: \"text.png\" is of no format that is known here; images can be OpenEXR, PNG, JPEG, Radiance HDR, TGA, BMP or PFM files",
     );
     check(
         "Texture \"t\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"constant\"",

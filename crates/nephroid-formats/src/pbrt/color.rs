@@ -38,7 +38,7 @@ impl Reader<'_> {
             },
             (Kind::Blackbody, Values::Numbers(list)) => match list.as_slice() {
                 [kelvin, scale @ ..] if scale.len() <= 1 => {
-                    if !(*kelvin > 0.0) {
+                    if *kelvin <= 0.0 {
                         self.log
                             .error(at, format!("a black body has a temperature above zero, not {kelvin}"));
                         return None;

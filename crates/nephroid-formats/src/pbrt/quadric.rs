@@ -71,7 +71,7 @@ impl Quadric {
                 let geometry = Geometry::Cylinder { p0: end(from), p1: end(to), radius: radius as f32 };
                 (geometry, Transform::IDENTITY)
             }
-            Kind::Disk { height, outer, inner } if inner == 0.0 => {
+            Kind::Disk { height, outer, inner: 0.0 } => {
                 let to_object = Transform::scale(DVec3::new(outer, outer, 1.0))
                     .then(Transform::translate(DVec3::new(0.0, 0.0, height)));
                 return Some(Form { geometry: Geometry::Disk, to_object });
