@@ -189,7 +189,7 @@ fn the_graphics_state() {
         "s.pbrt:2:1: error: Shape belongs behind WorldBegin",
     );
     check(
-        "ObjectBegin \"o\" ObjectBegin \"p\" ObjectEnd Shape \"disk\" ObjectEnd",
+        "ObjectBegin \"o\" ObjectBegin \"p\" ObjectEnd Shape \"disk\" ObjectEnd ObjectInstance \"o\"",
         "s.pbrt:2:30: error: an object in an object; the outer one begins at s.pbrt:2:14",
     );
     check(

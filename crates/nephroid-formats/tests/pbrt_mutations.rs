@@ -100,7 +100,7 @@ fn damaged(scene: &str, damages: &[Damage]) -> String {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 8_000,
+        cases: 4_000,
         rng_seed: proptest::test_runner::RngSeed::Fixed(1),
         failure_persistence: None,
         ..ProptestConfig::default()
