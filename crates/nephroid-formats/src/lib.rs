@@ -11,10 +11,14 @@ mod log;
 pub mod mesh;
 pub mod mitsuba;
 pub mod mitsuba_writer;
+mod number;
+mod open;
+pub mod pbrt;
 pub mod photons;
 mod sandbox;
 pub mod scene;
 mod scene_file;
+mod spectra;
 pub mod vfs;
 pub mod volume;
 

@@ -15,12 +15,13 @@ use crate::integrator_request::IntegratorRequest;
 use crate::mesh::{MeshError, MeshFile, MeshOptions, read_obj, read_ply};
 use crate::scene_file::{Options, Origins, SceneFile};
 use crate::vfs::Files;
-use crate::{gltf, mitsuba};
+use crate::{gltf, mitsuba, pbrt};
 
 /// What a file may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Mitsuba,
+    Pbrt,
     Gltf,
     Obj,
     Ply,
@@ -33,6 +34,8 @@ impl Format {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         match extension.as_deref() {
             Some("xml") => Self::Mitsuba,
+            Some("pbrt") => Self::Pbrt,
+            Some("gz") if path.with_extension("").extension().is_some_and(|e| e == "pbrt") => Self::Pbrt,
             Some("gltf" | "glb") => Self::Gltf,
             Some("obj") => Self::Obj,
             Some("ply") => Self::Ply,
@@ -52,7 +55,7 @@ impl Format {
     }
 }
 
-/// Reads a scene and all files it refers to: Mitsuba's XML, glTF, or a mesh alone (OBJ, PLY), which is grey and gets a
+/// Reads a scene and all files it refers to: Mitsuba's XML, pbrt-v4, glTF, or a mesh alone (OBJ, PLY), which is grey and gets a
 /// camera and a sky.
 ///
 /// # Errors
@@ -61,6 +64,7 @@ impl Format {
 pub fn read_scene(path: &Path, files: &dyn Files, options: &Options) -> Result<SceneFile, Diagnostics> {
     match Format::of(path, files) {
         Format::Mitsuba => mitsuba::read_scene(path, files, options),
+        Format::Pbrt => pbrt::read_scene(path, files, options),
         Format::Gltf => gltf::read_scene(path, files, options),
         Format::Obj => model(path, files, read_obj, true),
         Format::Ply => model(path, files, read_ply, false),
@@ -78,7 +82,7 @@ fn model(
     let fails = |message: String| Diagnostics(vec![Diagnostic::global_error(message)]);
     let bytes = files.read(path).map_err(|error| fails(format!("cannot read \"{name}\": {error}")))?;
     let options = MeshOptions { face_normals: false, flip_tex_coords: flips };
-    let MeshFile { mesh, degenerate } = read(&bytes, options).map_err(|error| {
+    let MeshFile { mesh, degenerate, .. } = read(&bytes, options).map_err(|error| {
         let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
         fails(format!("{name}{line}: {}", error.message))
     })?;

@@ -134,7 +134,7 @@ impl<'d> Reader<'d> {
 
     /// Without what cannot be seen.
     fn finished(&mut self, primitive: Item<'d>, mesh: Mesh, mode: usize) -> Option<Mesh> {
-        match without_degenerate(mesh) {
+        match without_degenerate(mesh, true) {
             Ok(file) => {
                 // Strips are joined by triangles without area.
                 if file.degenerate > 0 && mode == 4 {

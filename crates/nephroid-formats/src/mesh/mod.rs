@@ -11,6 +11,7 @@ mod serialized;
 mod subdivide;
 
 pub use obj::read_obj;
+pub(crate) use obj::replace_missing_normals;
 pub use patches::Patches;
 pub use ply::read_ply;
 pub use quadrics::{cylinder_part, disk_part, sphere_part};
@@ -37,6 +38,8 @@ pub struct MeshFile {
     pub mesh: Mesh,
     /// Triangles without area that were left out.
     pub degenerate: usize,
+    /// Whether the normals are those of the file, and not computed.
+    pub has_own_normals: bool,
 }
 
 /// Why a file is not a mesh.
@@ -60,7 +63,7 @@ impl MeshError {
 }
 
 /// Leaves out triangles without area; an error if no others are left.
-pub(crate) fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> {
+pub(crate) fn without_degenerate(mut mesh: Mesh, has_own_normals: bool) -> Result<MeshFile, MeshError> {
     let all = mesh.triangles.len();
     if all == 0 {
         return Err(MeshError::new("the file has no faces"));
@@ -71,7 +74,7 @@ pub(crate) fn without_degenerate(mut mesh: Mesh) -> Result<MeshFile, MeshError> 
     if degenerate == all {
         return Err(MeshError::new("no face of the file has an area"));
     }
-    Ok(MeshFile { mesh, degenerate })
+    Ok(MeshFile { mesh, degenerate, has_own_normals })
 }
 
 /// In double precision, so that small triangles are not taken for none.

@@ -34,7 +34,8 @@ pub fn read_obj(bytes: &[u8], options: MeshOptions) -> Result<MeshFile, MeshErro
         };
         read.map_err(|message| MeshError::at(number, message))?;
     }
-    without_degenerate(file.into_mesh(options))
+    let has_own_normals = !file.normals.is_empty() && !options.face_normals;
+    without_degenerate(file.into_mesh(options), has_own_normals)
 }
 
 /// The first `N` numbers of a line.
@@ -160,7 +161,7 @@ impl Obj {
 }
 
 /// Puts smooth normals where the file gives one of no length.
-pub(super) fn replace_missing_normals(mesh: &mut Mesh) {
+pub(crate) fn replace_missing_normals(mesh: &mut Mesh) {
     if !mesh.normals.contains(&Vec3::ZERO) {
         return;
     }

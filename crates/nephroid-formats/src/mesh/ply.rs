@@ -189,7 +189,7 @@ impl Making {
             mesh.compute_normals();
         }
         mesh.triangles.shrink_to_fit();
-        without_degenerate(mesh)
+        without_degenerate(mesh, has_normals)
     }
 }
 

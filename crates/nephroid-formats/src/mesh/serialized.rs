@@ -71,7 +71,7 @@ pub fn read_serialized(bytes: &[u8], shape_index: u32, options: MeshOptions) -> 
         mesh.normals = normals.as_chunks::<3>().0.iter().map(given).collect();
         replace_missing_normals(&mut mesh);
     }
-    without_degenerate(mesh)
+    without_degenerate(mesh, !face_normals && !normals.is_empty())
 }
 
 /// The version that a header tells.

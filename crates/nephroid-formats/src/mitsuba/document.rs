@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::legacy::upgrade;
-use super::open::{MAX_BYTES, decode, find};
 use super::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, Location, Source};
 use crate::log::{Log, shortened};
+use crate::open::{MAX_BYTES, decode, find};
 use crate::vfs::{Files, normalized};
 
 /// Elements inside elements.

@@ -11,12 +11,12 @@ use super::document::Element;
 use super::names::{EMITTERS, EMITTERS_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
 use crate::ies::read_ies;
 
 /// Half of the angle of the spot that stands for a beam.
 const BEAM_DEG: f32 = 0.1;
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// Reads an `<emitter>` into the scene; what is wrong goes to the log.

@@ -2,13 +2,13 @@
 
 use nephroid::material::Metal;
 
-use super::metals::{Known, metal, names};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
 use super::value::Value;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
+use crate::spectra::Role;
+use crate::spectra::{Known, metal, names};
 
 /// Indices of refraction by name, at 589 nm and room temperature (Hecht, Optics, 4th edition).
 const IORS: [(&str, f32); 23] = [

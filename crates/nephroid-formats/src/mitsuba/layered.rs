@@ -6,11 +6,11 @@ use nephroid::material::{Material, Metal};
 use nephroid::texture::Texture;
 
 use super::document::Element;
-use super::number::floats;
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
+use crate::number::floats;
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// So many materials that stand in one; `None` if the log says what is wrong.

@@ -4,7 +4,7 @@
 use nephroid::color::srgb;
 
 use super::document::{Attribute, Element};
-use super::number::floats;
+use crate::number::floats;
 
 /// Properties with another name, after their spelling: of which element and type, the old name, the new.
 const RENAMED: [(&str, &str, &str, &str); 1] = [("medium", "heterogeneous", "density", "sigma_t")];

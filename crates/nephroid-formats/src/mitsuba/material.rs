@@ -9,7 +9,7 @@ use super::document::Element;
 use super::names::{BSDFS, BSDFS_LIKE_DIFFUSE, BSDFS_LIKE_NULL};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::spectrum::Role;
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// A `<bsdf>`, read once however often it is referred to. `None` if the log says why.

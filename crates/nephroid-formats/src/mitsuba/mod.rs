@@ -6,7 +6,6 @@
 //! by its nearest kin with a warning, or refused where nothing is near (see [`Options::lenient`]).
 
 mod boundary;
-mod cie1931;
 mod daylight;
 mod dispersion;
 mod document;
@@ -18,10 +17,7 @@ mod layered;
 mod legacy;
 mod material;
 mod medium;
-mod metals;
 mod names;
-mod number;
-mod open;
 mod parameters;
 mod principled;
 mod properties;
@@ -29,7 +25,6 @@ mod reader;
 mod roughness;
 mod sensor;
 mod shape;
-mod spectrum;
 mod texture;
 mod transform;
 mod value;

@@ -7,7 +7,7 @@ use nephroid::texture::Texture;
 
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     pub(super) fn principled(&mut self, plugin: &Plugin<'t>) -> Material {

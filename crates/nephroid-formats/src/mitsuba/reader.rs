@@ -12,12 +12,12 @@ use nephroid::texture::{Pixmap, Texture, Textures};
 
 use super::document::Element;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
-use super::open::find;
 use super::properties::Plugin;
 use super::value::Ids;
 use super::volume::StoredGrid;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::log::{Log, shortened};
+use crate::open::find;
 use crate::scene_file::Origins;
 use crate::vfs::Files;
 

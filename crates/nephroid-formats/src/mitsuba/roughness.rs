@@ -6,8 +6,8 @@ use nephroid::texture::Texture;
 
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
+use crate::spectra::Role;
 
 /// What Mitsuba takes where nothing is said.
 const ALPHA: f32 = 0.1;

@@ -138,7 +138,7 @@ impl<'t> Reader<'t> {
 
     fn focal_length_mm(&self, plugin: &Plugin<'t>) -> f64 {
         let Some((text, at)) = plugin.text("focal_length") else { return 50.0 };
-        match super::number::float(text.trim().trim_end_matches("mm")) {
+        match crate::number::float(text.trim().trim_end_matches("mm")) {
             Ok(length) if length > 0.0 => length,
             _ => {
                 let message = Diagnostic::error(at, format!("\"{text}\" is not a focal length"));

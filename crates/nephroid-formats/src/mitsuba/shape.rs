@@ -13,10 +13,10 @@ use super::document::Element;
 use super::names::{SHAPES, SHAPES_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
 use crate::diagnostic::Diagnostic;
 use crate::log::shortened;
 use crate::mesh::{MeshOptions, read_obj, read_ply, read_serialized};
+use crate::spectra::Role;
 
 impl<'t> Reader<'t> {
     /// Reads a `<shape>` into the scene; what is wrong goes to the log.

@@ -9,11 +9,11 @@ use super::document::Element;
 use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::spectrum::{Role, Spectrum};
 use super::value::{Property, Value};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::image::read_texture;
 use crate::log::shortened;
+use crate::spectra::{Role, Spectrum};
 
 /// A colour, or a texture that was read.
 enum Paint {

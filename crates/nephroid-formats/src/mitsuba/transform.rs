@@ -3,9 +3,9 @@
 use nephroid::math::{DAffine3, DMat3, DVec3, Transform};
 
 use super::document::{Attribute, Element};
-use super::number::{float, floats};
 use crate::diagnostic::Diagnostic;
 use crate::log::{Log, shortened};
+use crate::number::{float, floats};
 
 const STEPS: [&str; 5] = ["translate", "rotate", "scale", "lookat", "matrix"];
 

@@ -7,11 +7,11 @@ use nephroid::math::{DVec3, Transform};
 
 use super::document::Element;
 use super::names::{OBJECT_TAGS, PROPERTY_TAGS};
-use super::number::{boolean, floats, integer};
-use super::spectrum::Spectrum;
 use super::transform::{self, list, number};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::log::{Log, shortened};
+use crate::number::{boolean, floats, integer};
+use crate::spectra::Spectrum;
 
 /// Elements by their `id`.
 pub(super) type Ids<'t> = BTreeMap<&'t str, &'t Element>;

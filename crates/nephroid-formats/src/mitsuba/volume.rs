@@ -8,7 +8,7 @@ use super::document::Element;
 use super::names::{VOLUMES, VOLUMES_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use super::spectrum::Role;
+use crate::spectra::Role;
 use crate::volume::{VolumeFile, read_vol};
 
 /// A grid that was read, and the map from [0, 1]³ to the box in its file; what is wrong with the box if

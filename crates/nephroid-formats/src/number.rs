@@ -3,7 +3,7 @@
 use crate::log::shortened;
 
 /// A finite number that fits a single-precision float.
-pub(super) fn float(text: &str) -> Result<f64, String> {
+pub(crate) fn float(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let value: f64 = text.parse().map_err(|_| {
         if text.is_empty() {
@@ -22,13 +22,13 @@ pub(super) fn float(text: &str) -> Result<f64, String> {
 }
 
 /// A whole number.
-pub(super) fn integer(text: &str) -> Result<i64, String> {
+pub(crate) fn integer(text: &str) -> Result<i64, String> {
     let text = text.trim();
     text.parse().map_err(|_| format!("\"{}\" is not a whole number", shortened(text)))
 }
 
 /// `true` or `false`.
-pub(super) fn boolean(text: &str) -> Result<bool, String> {
+pub(crate) fn boolean(text: &str) -> Result<bool, String> {
     match text.trim().to_ascii_lowercase().as_str() {
         "true" => Ok(true),
         "false" => Ok(false),
@@ -37,12 +37,12 @@ pub(super) fn boolean(text: &str) -> Result<bool, String> {
 }
 
 /// The words of a list separated by commas or blanks.
-pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty())
 }
 
 /// A list of numbers separated by commas or blanks.
-pub(super) fn floats(text: &str) -> Result<Vec<f64>, String> {
+pub(crate) fn floats(text: &str) -> Result<Vec<f64>, String> {
     words(text).map(float).collect()
 }
 

@@ -8,12 +8,12 @@ use crate::log::Log;
 use crate::sandbox::OutsideSandbox;
 use crate::vfs::Files;
 
-/// Bytes of XML in one scene.
-pub(super) const MAX_BYTES: usize = 256 << 20;
+/// Bytes of text in one scene.
+pub(crate) const MAX_BYTES: usize = 256 << 20;
 
 /// The path and bytes of a file named in a scene: an absolute one, or the first in the folders that may be
 /// read.
-pub(super) fn find(
+pub(crate) fn find(
     files: &dyn Files,
     folders: &[PathBuf],
     name: &str,
@@ -52,7 +52,7 @@ pub(super) fn find(
 }
 
 /// The text of a file, without a byte order mark.
-pub(super) fn decode(
+pub(crate) fn decode(
     name: &str,
     bytes: Vec<u8>,
     included_at: Option<&Location>,

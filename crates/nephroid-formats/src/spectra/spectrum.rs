@@ -3,8 +3,8 @@
 use nephroid::color::Rgb;
 
 use super::cie1931::{D65, FIRST_NM, OBSERVER, STEP_NM};
-use super::number::{float, floats, words};
 use crate::log::shortened;
+use crate::number::{float, floats, words};
 
 /// Width of the steps in which a spectrum is integrated.
 const INTEGRATION_STEP_NM: f64 = 0.5;
@@ -17,7 +17,7 @@ const XYZ_TO_RGB: [[f64; 3]; 3] = [
 
 /// What a colour is for. It decides how a spectrum turns into RGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// Multiplies light: seen under D65, and clamped to [0, 1].
     Reflectance,
     /// Is light: seen as it is.
@@ -28,7 +28,7 @@ pub(super) enum Role {
 
 /// A value for each wavelength.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Spectrum {
+pub(crate) enum Spectrum {
     /// The same for all.
     Uniform(f64),
     /// Linear between at least two (wavelength in nm, value), and zero outside.
@@ -37,7 +37,7 @@ pub(super) enum Spectrum {
 
 impl Spectrum {
     /// From an attribute: one number, or `wavelength:value` pairs.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
         if !text.contains(':') {
             return match floats(text)?.as_slice() {
                 [value] => Ok(Self::Uniform(*value)),
@@ -61,7 +61,7 @@ impl Spectrum {
     }
 
     /// From the text of a `.spd` file: a wavelength and a value in each line, `#` for comments.
-    pub(super) fn parse_file(text: &str) -> Result<Self, String> {
+    pub(crate) fn parse_file(text: &str) -> Result<Self, String> {
         let mut pairs = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
             let line = line.split('#').next().unwrap_or_default();
@@ -75,7 +75,18 @@ impl Spectrum {
         Self::samples(pairs)
     }
 
-    fn samples(pairs: Vec<(f64, f64)>) -> Result<Self, String> {
+    /// The colour of it as light whose luminance is one; `None` if it has none.
+    pub(crate) fn colour_of_light(&self) -> Option<Rgb> {
+        let xyz = match self {
+            Self::Uniform(value) => [*value; 3],
+            Self::Samples(pairs) => integrate(pairs, false),
+        };
+        let rgb = xyz_to_rgb(xyz).map(|v| (v / xyz[1]).max(0.0) as f32);
+        (xyz[1] > 0.0).then(|| Rgb::from(rgb)).filter(|rgb| rgb.is_finite())
+    }
+
+    /// Linear between pairs of a wavelength in nm and a value.
+    pub(crate) fn samples(pairs: Vec<(f64, f64)>) -> Result<Self, String> {
         if pairs.len() < 2 {
             return Err("a spectrum needs at least two wavelengths".to_string());
         }
@@ -88,16 +99,20 @@ impl Spectrum {
     /// The colour that the standard observer sees, normalised so that a value of one everywhere has
     /// luminance one. As Mitsuba does in its RGB modes, light is taken as it is (equal energy is
     /// slightly red), and what multiplies light is seen under D65 (equal reflection is white).
-    pub(super) fn to_rgb(&self, role: Role) -> Rgb {
+    pub(crate) fn to_rgb(&self, role: Role) -> Rgb {
         let xyz = match (self, role) {
             (Self::Uniform(value), Role::Emission) => [*value; 3],
             (Self::Uniform(value), _) => return Rgb::splat(*value as f32),
             (Self::Samples(pairs), _) => integrate(pairs, role != Role::Emission),
         };
-        let rgb = XYZ_TO_RGB.map(|row| (row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0));
-        let rgb = Rgb::from(rgb.map(|v| v as f32));
+        let rgb = Rgb::from(xyz_to_rgb(xyz).map(|v| v.max(0.0) as f32));
         if role == Role::Reflectance { rgb.map(|v| v.min(1.0)) } else { rgb }
     }
+}
+
+/// XYZ to linear sRGB; what that cannot show has a negative channel.
+pub(crate) fn xyz_to_rgb(xyz: [f64; 3]) -> [f64; 3] {
+    XYZ_TO_RGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
 
 /// XYZ of samples, by the trapezoidal rule.

@@ -1,4 +1,4 @@
-//! Complex indices of refraction of the conductors that Mitsuba knows by name.
+//! Complex indices of refraction of the conductors that scenes name.
 //!
 //! They are measurements of η and k at some wavelengths, taken from the database of refractiveindex.info
 //! (Polyanskiy 2024, doi 10.1038/s41597-023-02898-2; its data are in the public domain, CC0), linear
@@ -79,7 +79,7 @@ const UNMEASURED: [&str; 10] = ["Cu2O", "CuO", "HgTe", "Se", "Se-e", "SnTe", "Ta
 
 /// What is known of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Known {
+pub(crate) enum Known {
     /// η and k.
     Index(Rgb, Rgb),
     /// Its name alone.
@@ -88,7 +88,7 @@ pub(super) enum Known {
 
 /// A metal by its name, whatever the case, and with or without the `_palik` that Mitsuba adds to
 /// tell one measurement from another.
-pub(super) fn metal(name: &str) -> Option<Known> {
+pub(crate) fn metal(name: &str) -> Option<Known> {
     let lower = name.to_ascii_lowercase();
     let plain = lower.strip_suffix("_palik").unwrap_or(&lower);
     let is = |known: &str| known.eq_ignore_ascii_case(plain);
@@ -99,7 +99,7 @@ pub(super) fn metal(name: &str) -> Option<Known> {
 }
 
 /// Every name, for proposals.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     METALS.iter().map(|(name, _, _)| *name).chain(UNMEASURED).chain(["none"])
 }
 

@@ -3,12 +3,12 @@
 //! Source: CIE 018:2019, tables 5 and 1 (colour matching functions and D65).
 
 /// Wavelength of the first entry.
-pub(super) const FIRST_NM: f64 = 360.0;
+pub(crate) const FIRST_NM: f64 = 360.0;
 /// From one entry to the next.
-pub(super) const STEP_NM: f64 = 5.0;
+pub(crate) const STEP_NM: f64 = 5.0;
 
 /// Colour matching functions x̄, ȳ and z̄.
-pub(super) const OBSERVER: [[f64; 3]; 95] = [
+pub(crate) const OBSERVER: [[f64; 3]; 95] = [
     [0.0001299, 0.000003917, 0.0006061],
     [0.0002321, 0.000006965, 0.001086],
     [0.0004149, 0.00001239, 0.001946],
@@ -108,7 +108,7 @@ pub(super) const OBSERVER: [[f64; 3]; 95] = [
 
 /// Relative spectral power of D65, 100 at 560 nm. It ends at 780 nm, beyond which the observer sees
 /// next to nothing.
-pub(super) const D65: [f64; 85] = [
+pub(crate) const D65: [f64; 85] = [
     46.6383, 49.3637, 52.0891, 51.0323, 49.9755, 52.3118, 54.6482, 68.7015, 82.7549, 87.1204, 91.486,
     92.4589, 93.4318, 90.057, 86.6823, 95.7736, 104.865, 110.936, 117.008, 117.41, 117.812, 116.336, 114.861,
     115.392, 115.923, 112.367, 108.811, 109.082, 109.354, 108.578, 107.802, 106.296, 104.79, 106.239,

@@ -1,0 +1,10 @@
+//! Spectra, and the colours that they, metals and glowing bodies become.
+
+mod blackbody;
+mod cie1931;
+mod metals;
+mod spectrum;
+
+pub(crate) use blackbody::blackbody;
+pub(crate) use metals::{Known, metal, names};
+pub(crate) use spectrum::{Role, Spectrum, xyz_to_rgb};
