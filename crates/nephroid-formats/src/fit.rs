@@ -111,7 +111,7 @@ pub fn camera(bounds: &Bounds) -> Option<Camera> {
     let across = |p: DVec3, axis: DVec3| (p - center).dot(axis);
     let (left, up) = (turn.0.matrix3.x_axis, turn.0.matrix3.y_axis);
     let distance = corners(bounds)
-        .map(|p| p.as_dvec3())
+        .map(Vec3::as_dvec3)
         .into_iter()
         .map(|p| across(p, left).abs().max(across(p, up).abs()) / slope + across(p, towards))
         .fold(0.0, f64::max);

@@ -14,6 +14,7 @@ mod layers;
 mod limits;
 mod media_flags;
 mod media_laboratory;
+mod models;
 mod outputs;
 mod pictures;
 mod scenes;
