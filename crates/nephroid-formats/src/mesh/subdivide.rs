@@ -19,7 +19,7 @@ const MOST_TRIANGLES: u64 = 1 << 27;
 /// More than 2²⁷ triangles; indices that lead nowhere.
 pub fn loop_subdivision(mesh: &Mesh, levels: u32) -> Result<Mesh, MeshError> {
     let most = 4u64.checked_pow(levels).and_then(|each| each.checked_mul(mesh.triangles.len() as u64));
-    if !most.is_some_and(|most| most <= MOST_TRIANGLES) {
+    if most.is_none_or(|most| most > MOST_TRIANGLES) {
         return Err(MeshError::new(format!("{levels} levels make too many triangles")));
     }
     let count = mesh.positions.len();

@@ -20,7 +20,8 @@ const BINS: usize = 32;
 /// 10.1109/RT.2007.4342588). Coordinates count times `scale`.
 pub(super) fn part(boxes: &(impl Boxes + ?Sized), scale: f32, items: &mut [u32], most: usize) -> Parted {
     let mut parted = Parted { areas: Vec::new(), parts: Vec::new() };
-    let mut waiting = vec![0..items.len()];
+    let mut waiting = Vec::new();
+    waiting.push(0..items.len());
     while let Some(own) = waiting.pop() {
         let list = &mut items[own.clone()];
         if list.len() <= most {

@@ -75,7 +75,7 @@ fn size(textures: &Textures, texture: Handle<Texture>) -> Option<[u32; 2]> {
         Texture::Checkerboard(_) => Some([TILES; 2]),
         other => {
             let finer = |[a, b]: [u32; 2], [c, d]: [u32; 2]| [a.max(c), b.max(d)];
-            other.children().into_iter().filter_map(|child| size(textures, child)).reduce(finer)
+            other.children().filter_map(|child| size(textures, child)).reduce(finer)
         }
     }
 }

@@ -69,7 +69,7 @@ impl Material {
         loop {
             match materials[material] {
                 Self::Mask { inside, .. } | Self::NormalMap { inside, .. } | Self::BumpMap { inside, .. } => {
-                    material = inside
+                    material = inside;
                 }
                 Self::Dispersive { dispersion, .. } => return Some(dispersion),
                 _ => return None,
