@@ -46,6 +46,7 @@ pub const SCENES: &[BuiltinScene] = &[
     scene!("keyhole"),
     scene!("bulb"),
     scene!("window"),
+    scene!("prism", "prism.ply"),
     scene!("report-2-2a"),
     scene!("report-2-2b"),
     scene!("report-2-3"),

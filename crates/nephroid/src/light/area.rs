@@ -225,5 +225,7 @@ fn mean_over(pieces: &[Primitive], texture: Handle<Texture>, lookup: Lookup<'_>)
             area += share;
         }
     }
-    Rgb::from(sum.map(|s| (s / area) as f32))
+    let mean = Rgb::from(sum.map(|s| (s / area) as f32));
+    // Light that lies between all points is still light.
+    if mean.is_black() { lookup.textures.mean(texture) } else { mean }
 }

@@ -55,6 +55,7 @@ impl Material {
                     back
                 }
                 Self::TwoSided { front, .. } => front,
+                Self::Dispersive { inside, .. } => inside,
                 Self::NormalMap { normals, scale, inside } => {
                     surface = surface.mapped(textures, normals, scale);
                     inside
@@ -70,7 +71,16 @@ impl Material {
                 _ => break,
             }
         }
-        let lobes = materials[side].lobes(&Reader { textures, at: surface.at }, wo.dot(surface.ng) > 0.0);
+        let (reader, in_front) = (Reader { textures, at: surface.at }, wo.dot(surface.ng) > 0.0);
+        // What most surfaces are is written where it is wanted: all lobes that there may be are many bytes to move.
+        if let Self::Diffuse { reflectance } = materials[side] {
+            let albedo = reader.color(reflectance);
+            if in_front && !albedo.is_black() {
+                return Bsdf::new(surface.ng, surface.frame, Lobes::Diffuse(Lambertian { albedo }));
+            }
+            return Bsdf::new(surface.ng, surface.frame, Lobes::Black);
+        }
+        let lobes = materials[side].lobes(&reader, in_front);
         Bsdf::new(surface.ng, surface.frame, lobes)
     }
 

@@ -6,6 +6,7 @@ use super::fresnel::mirror;
 use super::kind::{Classes, LobeKind};
 use super::lambertian::Lambertian;
 use super::mixture::{self, Blend, Chances, Weighed};
+use super::part::Part;
 use super::phong::Phong;
 use super::split::Split;
 use crate::color::Rgb;
@@ -125,6 +126,7 @@ impl Lobes {
 }
 
 impl Bsdf {
+    #[inline(always)]
     pub(super) fn new(ng: Vec3, frame: Frame, lobes: Lobes) -> Self {
         let among = match &lobes {
             Lobes::Black => Classes::NONE,
@@ -158,7 +160,12 @@ impl Bsdf {
 
     /// The same, the boundary of a glass that takes light apart, met by a path of all wavelengths.
     pub(crate) fn dispersing(self) -> Self {
-        Self { disperses: matches!(self.lobes, Lobes::Dielectric(_)), ..self }
+        let disperses = match &self.lobes {
+            Lobes::Dielectric(_) => true,
+            Lobes::One(one) => matches!(one.part, Part::RoughDielectric(_)),
+            _ => false,
+        };
+        Self { disperses, ..self }
     }
 
     /// Whether other wavelengths are refracted another way, so that a path must be of a single one.
@@ -262,6 +269,11 @@ impl Bsdf {
             }
             _ => Rgb::BLACK,
         }
+    }
+
+    /// What both reflect together, about.
+    pub fn albedo(&self) -> Rgb {
+        self.diffuse_albedo() + self.glossy_albedo()
     }
 
     /// The lobes that are much the same in all directions. With [`glossy_part`](Self::glossy_part) they add up to all

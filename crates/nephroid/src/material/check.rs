@@ -290,8 +290,17 @@ impl Problems<'_> {
                 Material::NormalMap { inside, .. } | Material::BumpMap { inside, .. } => {
                     waiting.push(*inside);
                 }
+                Material::TwoSided { front, back } if front != back => waiting.extend([*front, *back]),
+                Material::TwoSided { front, .. } => waiting.push(*front),
                 Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => {
                     (count, refracting) = (count + 1, refracting + 1);
+                }
+                Material::RoughDielectric { int_ior, ext_ior, .. } if int_ior == ext_ior => {
+                    (count, refracting) = (count + 1, refracting + 1);
+                }
+                Material::Dispersive { .. } => {
+                    self.add("glass that takes light apart cannot be blended: leave its dispersion out");
+                    return;
                 }
                 _ => count += 1,
             }

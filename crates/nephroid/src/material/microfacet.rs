@@ -6,7 +6,7 @@ use super::roughness::Distribution;
 use crate::math::{Vec2, Vec3, real, warp};
 
 /// α below which a highlight is too narrow for photons.
-const SHARP: f32 = 0.1;
+pub(super) const SHARP: f32 = 0.1;
 
 /// α below which single precision does not tell facets apart.
 const SMOOTHEST: f32 = 1e-4;

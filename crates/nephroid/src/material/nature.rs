@@ -1,5 +1,6 @@
 //! What can be told of a material without looking at a surface.
 
+use super::microfacet::SHARP;
 use super::{Material, Roughness};
 use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
@@ -14,9 +15,14 @@ impl Material {
             Self::CoatedConductor { roughness, coat_roughness, .. } => {
                 roughness.is_none() || coat_roughness.is_none()
             }
-            Self::TwoSided { front: first, back: second } | Self::Blend { first, second, .. } => {
-                Self::has_dirac(materials, *first) || Self::has_dirac(materials, *second)
+            Self::TwoSided { front, back } => {
+                Self::has_dirac(materials, *front) || Self::has_dirac(materials, *back)
             }
+            // Beside other materials nothing is a lobe that light goes straight on by.
+            Self::Blend { first, second, .. } => [*first, *second]
+                .into_iter()
+                .any(|part| materials[part] == Self::Null || Self::has_dirac(materials, part)),
+            Self::RoughDielectric { int_ior, ext_ior, .. } => int_ior == ext_ior,
             Self::Mask { inside, .. }
             | Self::Dispersive { inside, .. }
             | Self::NormalMap { inside, .. }
@@ -24,12 +30,63 @@ impl Material {
             Self::Diffuse { .. }
             | Self::Phong { .. }
             | Self::RoughConductor { .. }
-            | Self::RoughDielectric { .. }
             | Self::DiffuseTransmission { .. }
             | Self::Principled(_)
             | Self::MetallicRoughness(_)
             | Self::Null => false,
         }
+    }
+
+    /// Whether a material may have lobes that are specular: Diracs and those nearly as narrow, which caustics are made by.
+    pub(crate) fn may_be_specular(
+        materials: &Arena<Self>,
+        material: Handle<Self>,
+        textures: &Textures,
+    ) -> bool {
+        // A texture may be anything somewhere.
+        let least = |texture: Handle<Texture>| match textures.list[texture] {
+            Texture::Constant(value) => value.mean(),
+            _ => 0.0,
+        };
+        let sharp = |r: &Roughness| least(r.alpha_u) < SHARP && least(r.alpha_v) < SHARP;
+        let of_root = |root: Handle<Texture>| least(root) * least(root) < SHARP;
+        let is_none = |texture: Handle<Texture>| textures.list[texture] == Texture::Constant(Rgb::BLACK);
+        let part = |part: Handle<Self>| Self::may_be_specular(materials, part, textures);
+        Self::has_dirac(materials, material)
+            || match &materials[material] {
+                Self::RoughConductor { roughness, .. } | Self::RoughDielectric { roughness, .. } => {
+                    sharp(roughness)
+                }
+                Self::Plastic { roughness, .. } => roughness.as_ref().is_some_and(sharp),
+                Self::CoatedConductor { roughness, coat_roughness, .. } => {
+                    [roughness, coat_roughness].into_iter().flatten().any(sharp)
+                }
+                Self::Principled(p) => of_root(p.roughness) || !is_none(p.clearcoat),
+                Self::MetallicRoughness(m) => {
+                    of_root(m.roughness) || (!is_none(m.clearcoat) && of_root(m.clearcoat_roughness))
+                }
+                Self::TwoSided { front: first, back: second } | Self::Blend { first, second, .. } => {
+                    part(*first) || part(*second)
+                }
+                Self::Mask { inside, .. }
+                | Self::Dispersive { inside, .. }
+                | Self::NormalMap { inside, .. }
+                | Self::BumpMap { inside, .. } => part(*inside),
+                _ => false,
+            }
+    }
+
+    /// A material without what changes its normals, or whether or how it is there: what kind of boundary it is.
+    pub(crate) fn boundary(materials: &Arena<Self>, material: Handle<Self>) -> Handle<Self> {
+        let mut material = material;
+        while let Self::Mask { inside, .. }
+        | Self::Dispersive { inside, .. }
+        | Self::NormalMap { inside, .. }
+        | Self::BumpMap { inside, .. } = materials[material]
+        {
+            material = inside;
+        }
+        material
     }
 
     /// Whether a material asks in which directions the texture coordinates of a surface go.

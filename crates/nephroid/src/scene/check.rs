@@ -279,12 +279,14 @@ fn check_priority(scene: &Scene, shape: &Shape, subject: Subject, problems: &mut
                        priority: use a closed shape";
         problems.add(subject, message);
     }
-    if scene.materials.contains(shape.material)
-        && !matches!(
-            scene.materials[shape.material],
-            Material::Dielectric { .. } | Material::Dispersive { .. } | Material::Null
-        )
-    {
+    let is_clear = |material: &Material| match *material {
+        Material::Dielectric { .. } | Material::Null => true,
+        Material::Dispersive { inside, .. } => {
+            scene.materials.contains(inside) && matches!(scene.materials[inside], Material::Dielectric { .. })
+        }
+        _ => false,
+    };
+    if scene.materials.contains(shape.material) && !is_clear(&scene.materials[shape.material]) {
         let message = "only what light goes into has a priority: make it a smooth dielectric or `null`, or take \
                        the priority away";
         problems.add(subject, message);

@@ -169,7 +169,7 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
             PhotonKind::Direct => [extras.direct, false],
             PhotonKind::Caustic => [false, false],
         };
-        let lists = if is_read(world, &event) { lists } else { [false, false] };
+        let lists = if is_read(world, &event, kind) { lists } else { [false, false] };
         Kept { item: record(state, path, event), lists, next: Next::Continue }
     })?;
     let caustic_key = Key::new(seed, iteration, Stream::CausticPhotons);
@@ -182,11 +182,11 @@ pub(super) fn photon_pass_with<H: Default, T: Copy + Send>(
             (Event::Bounce(..) | Event::Collision(..), _) => ([false, false], after_caustic(&event)),
             (_, PhotonKind::Caustic) if extras.unseen => ([true, false], Next::Continue),
             (_, PhotonKind::Caustic) => ([true, false], after_caustic(&event)),
-            (_, PhotonKind::Afterglow) => ([false, true], Next::Stop),
+            (_, PhotonKind::Afterglow) => ([false, true], after_caustic(&event)),
             (_, PhotonKind::Direct) => ([false, false], after_caustic(&event)),
             (_, PhotonKind::Haze | PhotonKind::Global) => ([false, false], Next::Stop),
         };
-        let lists = if is_read(world, &event) { lists } else { [false, false] };
+        let lists = if is_read(world, &event, kind) { lists } else { [false, false] };
         Kept { item: record(state, path, event), lists, next }
     })?;
     Some(Stored { global, caustic, afterglow, haze, ledger })

@@ -95,7 +95,7 @@ impl PhotonPlan {
         }
         let too_short = settings.max_photon_depth.is_some_and(|max| max < 2);
         // Light of media makes no caustics, and is indirect from the start.
-        let specular = !too_short && world.has_dirac_surfaces() && world.has_lights_to_ask();
+        let specular = !too_short && world.has_specular_surfaces() && world.has_lights_to_ask();
         let short_enough = !too_short || world.glows();
         let volume = world.has_media() && settings.fog == Fog::Volume;
         let plan = |map| {
@@ -181,7 +181,7 @@ fn count(
                 let mut sampler = Sampler::new(Sequence::Independent, key, path);
                 walk(world, settings, map, path, &mut sampler, &mut books.lights, |event, kind| {
                     let (counts, next) = tried(map, targets, &event, kind);
-                    stored += u64::from(counts && is_read(world, &event));
+                    stored += u64::from(counts && is_read(world, &event, kind));
                     next
                 });
             }
@@ -218,9 +218,12 @@ fn tried(map: MapKind, targets: &PhotonTargets, event: &Event<'_>, kind: PhotonK
 
 /// Whether anything reads a photon: surfaces without a broad lobe are followed, not estimated at, but for the light of Dirac
 /// lamps that came by specular surfaces, which no ray finds.
-pub(super) fn is_read(world: &World, event: &Event<'_>) -> bool {
+pub(super) fn is_read(world: &World, event: &Event<'_>, kind: PhotonKind) -> bool {
     match event {
-        Event::Surface(photon, lit) => lit.gathers() || world.emitters()[photon.light as usize].is_dirac(),
+        Event::Surface(photon, lit) => {
+            let is_dirac = || world.emitters()[photon.light as usize].is_dirac();
+            lit.gathers() || (kind == PhotonKind::Caustic && is_dirac())
+        }
         _ => true,
     }
 }

@@ -84,6 +84,7 @@ impl World {
             surface_lights: emitters.len(),
             skies: (0..).zip(&emitters).filter(|(_, e)| e.is_sky()).map(|(i, _)| i).collect(),
             wide_sky: emitters.iter().any(Emitter::is_wide_sky),
+            dirac_lamps: emitters.iter().any(Emitter::is_dirac),
             emitters,
             by_power,
             asked,

@@ -49,8 +49,11 @@ impl World {
         throughput: &mut Rgb,
         sampler: &mut Sampler,
     ) -> Bsdf {
+        let Some(hues) = &self.hues else { return self.bsdf_within(hit, wo, inside) };
         let bsdf = self.bsdf_within(hit, wo, inside);
-        let Some(hues) = self.hues.as_ref().filter(|_| bsdf.disperses()) else { return bsdf };
+        if !bsdf.disperses() {
+            return bsdf;
+        }
         let (wavelength, weight) = hues.sample(sampler.next_1d());
         inside.wavelength = Some(wavelength);
         *throughput *= weight;

@@ -59,6 +59,8 @@ pub struct World {
     skies: Vec<u32>,
     /// Whether any of these is one of which most directions bring some.
     wide_sky: bool,
+    /// Whether any of them is a Dirac one.
+    dirac_lamps: bool,
     /// How many of them are no media; those that are come last.
     surface_lights: usize,
     /// Emitters by power; `None` if there is no light at all.
@@ -224,11 +226,16 @@ impl World {
 
     /// Whether any lamp is a Dirac one, which no path meets by chance.
     pub(crate) fn has_dirac_lamps(&self) -> bool {
-        self.emitters.iter().any(Emitter::is_dirac)
+        self.dirac_lamps
     }
 
-    /// Whether any surface is a Dirac one, null ones aside: without, there are no caustics.
+    /// Whether any surface has Dirac lobes, null ones aside.
     pub(crate) fn has_dirac_surfaces(&self) -> bool {
+        self.aims.dirac
+    }
+
+    /// Whether any surface may have lobes that are Diracs or nearly so: without, there are no caustics.
+    pub(crate) fn has_specular_surfaces(&self) -> bool {
         self.aims.specular
     }
 
@@ -267,10 +274,10 @@ impl World {
         }
     }
 
-    /// What a shape is made of, counted as in [`Hit::shape`]; of a masked one what is inside.
+    /// What a shape is made of, counted as in [`Hit::shape`]; of a masked one, and of one whose normals are changed, what is inside.
     pub(crate) fn material_of(&self, shape: u32) -> &Material {
         let material = self.surfaces[shape as usize].material;
-        &self.scene.materials[Material::unmasked(&self.scene.materials, material)]
+        &self.scene.materials[Material::boundary(&self.scene.materials, material)]
     }
 
     /// How the surface scatters, seen from the side of `wo` and not from inside of any shape with a priority.

@@ -66,7 +66,7 @@ pub(super) fn ranks(scene: &Scene) -> Vec<Ranked> {
     order.sort_by_key(|&(priority, i, _)| (priority, std::cmp::Reverse(i)));
     let ranked = order.into_iter().map(|(_, shape, described)| Ranked {
         shape,
-        ior: match scene.materials[Material::unmasked(&scene.materials, described.material)] {
+        ior: match scene.materials[Material::boundary(&scene.materials, described.material)] {
             Material::Dielectric { int_ior, .. } => Some(int_ior),
             _ => None,
         },
@@ -100,14 +100,15 @@ impl World {
     /// not at all inside of a shape of higher priority, and against the index of refraction of a lower one.
     #[inline]
     pub(crate) fn bsdf_within(&self, hit: &Hit, wo: Vec3, inside: &Surroundings) -> Bsdf {
-        let bsdf = self.bsdf(hit, wo);
-        match self.surfaces[hit.shape as usize] {
-            Surfaced { rank: 0, disperses: false, .. } => bsdf,
-            Surfaced { rank: 0, .. } => self.dispersive_bsdf(bsdf, hit, inside.wavelength),
-            Surfaced { rank, .. } => {
-                self.ranked_bsdf(bsdf, rank, self.beside(rank, hit, -wo, inside), inside.wavelength)
-            }
+        let Surfaced { rank, disperses, .. } = self.surfaces[hit.shape as usize];
+        if rank == 0 && !disperses {
+            return self.bsdf(hit, wo);
         }
+        let bsdf = self.bsdf(hit, wo);
+        if rank == 0 {
+            return self.dispersive_bsdf(bsdf, hit, inside.wavelength);
+        }
+        self.ranked_bsdf(bsdf, rank, self.beside(rank, hit, -wo, inside), inside.wavelength)
     }
 
     fn ranked_bsdf(&self, bsdf: Bsdf, rank: Rank, beside: Rank, wavelength: Option<Wavelength>) -> Bsdf {
@@ -141,7 +142,10 @@ impl World {
 
     /// The index of refraction outside of a shape, as its material has it.
     fn ext_ior(&self, shape: u32) -> f32 {
-        if let Material::Dielectric { ext_ior, .. } = *self.material_of(shape) { ext_ior } else { 1.0 }
+        match *self.material_of(shape) {
+            Material::Dielectric { ext_ior, .. } | Material::RoughDielectric { ext_ior, .. } => ext_ior,
+            _ => 1.0,
+        }
     }
 
     /// Whether there is no surface where a ray along `direction` meets a shape.

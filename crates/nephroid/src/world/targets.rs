@@ -23,7 +23,9 @@ const BY_POWER: f64 = 0.05;
 /// The aims of both maps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Aims {
-    /// Whether anything to be seen is specular: without, there are no caustics.
+    /// Whether anything to be seen has Dirac lobes.
+    pub dirac: bool,
+    /// Whether anything to be seen may have lobes that are Diracs or nearly so: without, there are no caustics.
     pub specular: bool,
     /// At all surfaces; `None` if one of them is infinite.
     pub global: Option<Aim>,
@@ -63,6 +65,7 @@ impl Aims {
         let lookup = Lookup { meshes: scenery.meshes.as_slice(), textures: &scene.textures };
         let aim = |targets, selective| Aim::new(emitters, lookup, targets, selective);
         Self {
+            dirac: has_dirac(scene),
             specular: solids.iter().any(|solid| solid.specular),
             global: targets_of_all(&solids).and_then(|targets| aim(targets, false)),
             caustic: specular_targets(&solids).and_then(|targets| aim(targets, true)),
@@ -150,7 +153,7 @@ fn solids(scene: &Scene, scenery: &Scenery, emitter_of_shape: &[Option<u32>]) ->
             return None;
         }
         let lamp = emitter_of_shape.get(shape).copied().flatten();
-        let specular = Material::has_dirac(&scene.materials, material);
+        let specular = Material::may_be_specular(&scene.materials, material, &scene.textures);
         let (items, planes) = items(scenery, shape, specular);
         Some(Solid { lamp, specular, items, planes })
     };
@@ -209,6 +212,11 @@ fn targets_of_all(solids: &[Solid]) -> Option<Targets> {
         }
     }
     Some(targets)
+}
+
+/// Whether any shape has a material with Dirac lobes.
+fn has_dirac(scene: &Scene) -> bool {
+    scene.all_shapes().any(|shape| Material::has_dirac(&scene.materials, shape.material))
 }
 
 /// The balls around what is specular; `None` if some of it is infinite.

@@ -214,14 +214,15 @@ impl<'a> PhotonMapper<'a> {
         // Light that media give off is none of direct light's, though it may come straight here, by one segment.
         let straight = u32::from(self.world.glows());
         if shows_global && self.fits(vertex.depth + 2 - straight) {
-            let (bsdf, most) = match self.gather_rays {
-                Some(most) => (*vertex.bsdf, most),
-                None if vertex.bsdf.has_glossy_lobe() => (vertex.bsdf.glossy_part(), 1),
-                None => return,
+            let glossy = self.gather_rays.is_none().then(|| vertex.bsdf.glossy_part());
+            let (bsdf, most) = match (self.gather_rays, &glossy) {
+                (Some(most), _) => (vertex.bsdf, most),
+                (None, Some(glossy)) if !glossy.is_black() => (glossy, 1),
+                (None, _) => return,
             };
-            let vertex = Vertex { bsdf: &bsdf, ..*vertex };
+            let vertex = Vertex { bsdf, ..*vertex };
             let guide = self.guides.at(vertex.point().position, vertex.facing_normal(), tools.neighbors);
-            let wanted = self.weight_of_gathering(&bsdf, guide.as_ref(), beside, branch.share);
+            let wanted = self.weight_of_gathering(bsdf, guide.as_ref(), beside, branch.share);
             let rays = ((most as f32 * wanted).ceil() as u32).clamp(1, most);
             let key = sample.key.with(branch.number);
             let first = sample.index / u64::from(self.stride) * u64::from(most);

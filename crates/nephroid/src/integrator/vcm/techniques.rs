@@ -178,11 +178,13 @@ impl Camera<'_> {
         }
         let (wo, position) = (-walk.ray.direction, hit.point.position);
         let normal = if wo.dot(hit.point.ng) > 0.0 { hit.point.ng } else { -hit.point.ng };
+        let transmits = bsdf.transmits();
         let (at_first, scale) = (walk.at_first, walk.throughput / area);
         let [mut caustic, mut global, mut of_half] = [Rgb::BLACK; 3];
         self.paths.each_within(position, radius, |photon, place| {
             let height = (place - position).dot(normal);
-            if photon.normal.dot(normal) < MIN_NORMAL_COSINE
+            let alike = photon.normal.dot(normal);
+            if (if transmits { alike.abs() } else { alike }) < MIN_NORMAL_COSINE
                 || height.abs() > MAX_THICKNESS * radius
                 || !self.fits(walk.depth + photon.depth)
             {

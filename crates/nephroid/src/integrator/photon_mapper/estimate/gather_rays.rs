@@ -32,7 +32,7 @@ impl PhotonMapper<'_> {
             return 1.0;
         }
         let Some(guide) = guide else { return share * WEIGHT_WHERE_DARK };
-        let albedo = bsdf.diffuse_albedo() + bsdf.glossy_albedo();
+        let albedo = bsdf.albedo();
         let gathered = (albedo * guide.irradiance).mean() / PI;
         let light = gathered + beside.mean();
         share * if light > 0.0 { (2.0 * gathered / light).min(1.0) } else { 1.0 }
@@ -80,7 +80,8 @@ impl PhotonMapper<'_> {
     /// that few of them chance upon makes white specks, and its photons one bounce on do not. And light that
     /// media send to the surface.
     pub(super) fn unseen<P: Probe>(&self, vertex: &Vertex<'_>, tools: &mut Tools<'_, P>) -> Rgb {
-        let smooth = Vertex { bsdf: &vertex.bsdf.diffuse_part(), ..*vertex };
+        let part = vertex.bsdf.has_glossy_lobe().then(|| vertex.bsdf.diffuse_part());
+        let smooth = Vertex { bsdf: part.as_ref().unwrap_or(vertex.bsdf), ..*vertex };
         let wanted = LookUp { map: MapName::Afterglow, direct: None, other: Some(LightPart::Global) };
         let afterglow = self.look_up(&wanted, &smooth, self.afterglow_bandwidth, tools).1;
         // Light from media comes from everywhere, and is smooth on rough surfaces; glossy lobes see it by their rays.
@@ -147,9 +148,10 @@ impl PhotonMapper<'_> {
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first: false });
             let mut far = false;
             if bsdf.has(LobeKind::Broad) {
+                let part = bsdf.has_specular().then(|| bsdf.part(LobeKind::Broad));
                 let there = Vertex {
                     hit: &hit,
-                    bsdf: &bsdf.part(LobeKind::Broad),
+                    bsdf: part.as_ref().unwrap_or(&bsdf),
                     wo,
                     depth,
                     inside: way.inside,

@@ -44,7 +44,9 @@ impl Branch {
 
     /// What goes on by specular lobes of a surface that has others, too.
     fn beyond(self, share: f32) -> Self {
-        Self { number: self.number << 1, share: self.share * share }
+        // However long the way, its number stays above those of ways that may still be split.
+        let number = self.number << 1 | self.number & 1 << (u64::BITS - 1);
+        Self { number, share: self.share * share }
     }
 }
 
@@ -114,10 +116,13 @@ impl PhotonMapper<'_> {
             tools.probe.surface(&Met { hit: &hit, bsdf: &bsdf, wo, depth, throughput, first });
             let across = self.world.camera().pixel_radius(way.before + hit.t);
             let footprint = across / wo.dot(hit.point.ng).abs().max(MIN_COSINE).sqrt();
-            let (broad, specular) = (bsdf.part(LobeKind::Broad), bsdf.without_broad());
+            // Most surfaces are of one class, and stand for its part as they are.
+            let parts = (bsdf.has(LobeKind::Broad) && bsdf.has_specular())
+                .then(|| [bsdf.part(LobeKind::Broad), bsdf.without_broad()]);
+            let [broad, specular] = parts.as_ref().map_or([&bsdf; 2], |parts| parts.each_ref());
             let vertex = Vertex {
                 hit: &hit,
-                bsdf: &broad,
+                bsdf: broad,
                 wo,
                 depth,
                 inside: way.inside,
@@ -132,7 +137,7 @@ impl PhotonMapper<'_> {
                 return;
             }
             if bsdf.has(LobeKind::Sharp) {
-                let vertex = Vertex { bsdf: &specular, dirac_lamps: true, ..vertex };
+                let vertex = Vertex { bsdf: specular, dirac_lamps: true, ..vertex };
                 self.highlights(&vertex, &track, sample, tools, out);
             }
             if bsdf.is_dirac()
@@ -148,12 +153,12 @@ impl PhotonMapper<'_> {
                 }
                 return;
             }
-            let Some((next, carried)) = scatter(&specular, wo, throughput, depth - 1, &mut sample.sampler)
+            let Some((next, carried)) = scatter(specular, wo, throughput, depth - 1, &mut sample.sampler)
             else {
                 return;
             };
             if !bsdf.is_dirac() {
-                let others = (broad.diffuse_albedo() + broad.glossy_albedo()).mean();
+                let others = if parts.is_some() { broad.albedo().mean() } else { 0.0 };
                 let own = next.weight.mean() / next.radiance_scale;
                 track.branch = branch.beyond(own / (own + others));
                 track.direct = false;
