@@ -287,9 +287,9 @@ impl Problems<'_> {
         while let Some(next) = waiting.pop() {
             match &materials[next] {
                 Material::Blend { first, second, .. } => waiting.extend([*first, *second]),
-                Material::NormalMap { inside, .. } | Material::BumpMap { inside, .. } => {
-                    waiting.push(*inside);
-                }
+                Material::NormalMap { inside, .. }
+                | Material::BumpMap { inside, .. }
+                | Material::Dispersive { inside, .. } => waiting.push(*inside),
                 Material::TwoSided { front, back } if front != back => waiting.extend([*front, *back]),
                 Material::TwoSided { front, .. } => waiting.push(*front),
                 Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => {
@@ -297,10 +297,6 @@ impl Problems<'_> {
                 }
                 Material::RoughDielectric { int_ior, ext_ior, .. } if int_ior == ext_ior => {
                     (count, refracting) = (count + 1, refracting + 1);
-                }
-                Material::Dispersive { .. } => {
-                    self.add("glass that takes light apart cannot be blended: leave its dispersion out");
-                    return;
                 }
                 _ => count += 1,
             }
