@@ -49,8 +49,12 @@ impl<'a> Body<'a> {
                     }
                     PropertyType::List(of_count, kind) => {
                         let count = self.scalar(of_count).ok_or_else(short)?;
-                        let length = count as usize * size_of_scalar(kind) as usize;
-                        if count < 0.0 || length > self.bytes.len() {
+                        if count.is_nan() || count < 0.0 {
+                            let message = format!("{} {number} has a list of length {count}", element.name);
+                            return Err(MeshError::new(message));
+                        }
+                        let length = (count as usize).saturating_mul(size_of_scalar(kind) as usize);
+                        if length > self.bytes.len() {
                             return Err(short());
                         }
                         if wanted == Use::List {

@@ -5,14 +5,17 @@ use super::Spectrum;
 /// Second radiation constant h·c/k, in m·K (CODATA 2018).
 const SECOND_CONSTANT: f64 = 1.438_776_877e-2;
 
+/// The longest wavelength of the samples.
+const LONGEST_NM: f64 = 830.0;
+
 /// The relative spectrum of a black body at `kelvin`, by Planck's law (1900).
 pub(crate) fn blackbody(kelvin: f64) -> Spectrum {
     let exponent = |nm: f64| SECOND_CONSTANT / (nm * 1e-9 * kelvin);
-    // Relative to 780 nm, for at low temperatures all is below what a number can be.
-    let at_red = exponent(780.0);
+    // Relative to the longest, for at low temperatures all is below what a number can be.
+    let at_red = exponent(LONGEST_NM);
     let radiance = |nm: f64| {
         let (own, red) = (exponent(nm), libm::expm1(-at_red) / libm::expm1(-exponent(nm)));
-        red * libm::exp(at_red - own) / libm::pow(nm / 780.0, 5.0)
+        red * libm::exp(at_red - own) / libm::pow(nm / LONGEST_NM, 5.0)
     };
     let pairs = (0..=94).map(|i| 360.0 + 5.0 * f64::from(i)).map(|nm| (nm, radiance(nm))).collect();
     Spectrum::Samples(pairs)
