@@ -119,7 +119,7 @@ impl PhotonMapper<'_> {
             // Most surfaces are of one class, and stand for its part as they are.
             let parts = (bsdf.has(LobeKind::Broad) && bsdf.has_specular())
                 .then(|| [bsdf.part(LobeKind::Broad), bsdf.without_broad()]);
-            let [broad, specular] = parts.as_ref().map_or([&bsdf; 2], |parts| parts.each_ref());
+            let [broad, specular] = parts.as_ref().map_or([&bsdf; 2], <[Bsdf; 2]>::each_ref);
             let vertex = Vertex {
                 hit: &hit,
                 bsdf: broad,
