@@ -147,7 +147,6 @@ fn cornell() {
         });
     };
     use nephroid::math::DVec3;
-    use nephroid::medium::Boundary;
     let turns = [(DVec3::X, 0.0), (DVec3::X, 90.0), (DVec3::X, -90.0), (DVec3::Y, 90.0), (DVec3::Y, -90.0)];
     for (axis, degrees) in turns {
         let wall = Transform::translate(DVec3::new(0.0, 0.0, -1.0)).then(Transform::rotate(axis, degrees));
