@@ -37,6 +37,17 @@ impl Log {
         self.push(Diagnostic::warning(at, message));
     }
 
+    /// Says that something that a format has is not built yet, so that it is left out: an error unless the caller is
+    /// lenient.
+    pub(crate) fn left_out(&self, at: &Location, what: &str, lenient: bool) {
+        if lenient {
+            self.warn(at, format!("{what} cannot be rendered yet and is left out"));
+        } else {
+            let message = Diagnostic::error(at, format!("{what} cannot be rendered yet"));
+            self.push(message.hint("--lenient leaves it out"));
+        }
+    }
+
     pub(crate) fn has_errors(&self) -> bool {
         self.list.borrow().iter().any(is_error)
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diagnostic::{Location, Source};
-use crate::log::Log;
+use crate::log::{Log, shortened};
 use crate::sandbox::OutsideSandbox;
 use crate::vfs::Files;
 
@@ -49,6 +49,19 @@ pub(crate) fn find(
         n => format!(" and {} more", n - 1),
     };
     Err(Error::new(ErrorKind::NotFound, format!("no such file in {}{more}", first.display())))
+}
+
+/// The same, and to the log why there is none.
+pub(crate) fn read_named(
+    files: &dyn Files,
+    folders: &[PathBuf],
+    name: &str,
+    at: &Location,
+    log: &Log,
+) -> Option<(PathBuf, Vec<u8>)> {
+    find(files, folders, name)
+        .map_err(|error| log.error(at, format!("cannot read \"{}\": {error}", shortened(name))))
+        .ok()
 }
 
 /// The text of a file, without a byte order mark.

@@ -1,10 +1,14 @@
 //! What every reader of scenes gives: the scene, how its file wants it rendered, and where its parts stand.
 
+use std::path::Path;
+
 use nephroid::scene::Scene;
 
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::fit::Fitted;
 use crate::integrator_request::IntegratorRequest;
+use crate::log::Log;
+use crate::vfs::Files;
 
 /// How to read a scene.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +63,26 @@ pub struct Origins {
     pub media: Vec<Location>,
     /// Each of [`Media::grids`](nephroid::medium::Media::grids): where its file is first named.
     pub grids: Vec<Location>,
+}
+
+impl SceneFile {
+    /// What reading gives: the scene with its warnings, or all messages if it is none or any of them is an error.
+    pub(crate) fn read(file: Option<Self>, log: Log) -> Result<Self, Diagnostics> {
+        let has_errors = log.has_errors();
+        let warnings = log.into_list();
+        match file {
+            Some(file) if !has_errors => Ok(Self { warnings, ..file }),
+            _ => Err(Diagnostics(warnings)),
+        }
+    }
+}
+
+/// The bytes of a scene's own file.
+pub(crate) fn read_whole(path: &Path, files: &dyn Files) -> Result<Vec<u8>, Diagnostics> {
+    files.read(path).map_err(|error| {
+        let message = format!("cannot read \"{}\": {error}", path.display());
+        Diagnostics(vec![Diagnostic::global_error(message)])
+    })
 }
 
 impl Origins {

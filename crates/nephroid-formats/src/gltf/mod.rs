@@ -34,7 +34,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Location, Source};
 use crate::fit::{self, Fitted};
 use crate::integrator_request::IntegratorRequest;
 use crate::log::Log;
-use crate::scene_file::{Options, SceneFile};
+use crate::scene_file::{Options, SceneFile, read_whole};
 use crate::vfs::Files;
 
 /// Reads a model and all files it refers to. One without a camera or without a light is given them (see [`fit`]).
@@ -43,13 +43,7 @@ use crate::vfs::Files;
 ///
 /// All that is wrong with the model, and the warnings with it.
 pub fn read_scene(path: &Path, files: &dyn Files, options: &Options) -> Result<SceneFile, Diagnostics> {
-    match files.read(path) {
-        Ok(bytes) => read_bytes(path, bytes, files, options),
-        Err(error) => {
-            let message = format!("cannot read \"{}\": {error}", path.display());
-            Err(Diagnostics(vec![Diagnostic::global_error(message)]))
-        }
-    }
+    read_bytes(path, read_whole(path, files)?, files, options)
 }
 
 /// [`read_scene`] of bytes in memory. `path` is what messages call them; the folder in it, if any, is where the files that
@@ -82,12 +76,7 @@ pub fn read_bytes(
     let document = Document { source: &source, root: &root, log: &log };
     let reader = Reader::new(document.item(), files, path, container.binary, options.lenient);
     let file = is_version_2(document.item()).then(|| interpret(reader)).flatten();
-    let has_errors = log.has_errors();
-    let messages = log.into_list();
-    match file {
-        Some(file) if !has_errors => Ok(SceneFile { warnings: messages, ..file }),
-        _ => Err(Diagnostics(messages)),
-    }
+    SceneFile::read(file, log)
 }
 
 fn is_version_2(root: Item) -> bool {

@@ -40,7 +40,7 @@ use self::value::Ids;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::fit::Fitted;
 use crate::log::Log;
-use crate::scene_file::{Options, Origins, SceneFile};
+use crate::scene_file::{Options, Origins, SceneFile, read_whole};
 use crate::vfs::Files;
 
 /// Reads a scene and all files it refers to.
@@ -49,13 +49,7 @@ use crate::vfs::Files;
 ///
 /// All that is wrong with the scene, and the warnings with it.
 pub fn read_scene(path: &Path, files: &dyn Files, options: &Options) -> Result<SceneFile, Diagnostics> {
-    match files.read(path) {
-        Ok(bytes) => read_bytes(path, bytes, files, options),
-        Err(error) => {
-            let message = format!("cannot read \"{}\": {error}", path.display());
-            Err(Diagnostics(vec![Diagnostic::global_error(message)]))
-        }
-    }
+    read_bytes(path, read_whole(path, files)?, files, options)
 }
 
 /// Reads a scene from a text. `name` is what messages call it; the folder in it, if any, is where
@@ -82,12 +76,7 @@ fn read_bytes(
     let log = Log::default();
     let file = document::load(path, bytes, files, &options.defines, &log)
         .and_then(|document| interpret(&document, files, options, &log));
-    let has_errors = log.has_errors();
-    let messages = log.into_list();
-    match file {
-        Some(file) if !has_errors => Ok(SceneFile { warnings: messages, ..file }),
-        _ => Err(Diagnostics(messages)),
-    }
+    SceneFile::read(file, log)
 }
 
 fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Log) -> Option<SceneFile> {

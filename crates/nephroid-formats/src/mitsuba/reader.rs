@@ -17,7 +17,7 @@ use super::value::Ids;
 use super::volume::StoredGrid;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::log::{Log, shortened};
-use crate::open::find;
+use crate::open::read_named;
 use crate::scene_file::Origins;
 use crate::vfs::Files;
 
@@ -114,24 +114,13 @@ impl<'t> Reader<'t> {
 
     /// The bytes of a file that the scene names, and the path it was found at.
     pub(super) fn read_file(&self, name: &str, at: &Location) -> Option<(PathBuf, Vec<u8>)> {
-        match find(self.files, self.folders, name) {
-            Ok(found) => Some(found),
-            Err(error) => {
-                self.log.error(at, format!("cannot read \"{}\": {error}", shortened(name)));
-                None
-            }
-        }
+        read_named(self.files, self.folders, name, at, self.log)
     }
 
     /// Says that something that the format has is not built yet, so that it is left out: an error
     /// unless the caller is lenient.
     pub(super) fn left_out(&self, at: &Location, what: &str) {
-        if self.lenient {
-            self.log.warn(at, format!("{what} cannot be rendered yet and is left out"));
-        } else {
-            let message = Diagnostic::error(at, format!("{what} cannot be rendered yet"));
-            self.log.push(message.hint("--lenient leaves it out"));
-        }
+        self.log.left_out(at, what, self.lenient);
     }
 
     /// Says that a plugin's type is not one of the format.

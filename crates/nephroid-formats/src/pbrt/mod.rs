@@ -43,11 +43,11 @@ use nephroid::film::FilmSettings;
 use nephroid::scene::Scene;
 
 use self::reader::Reader;
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, Source};
+use crate::diagnostic::{Diagnostics, Location, Source};
 use crate::fit::Fitted;
 use crate::log::Log;
 use crate::open::decode;
-use crate::scene_file::{Options, Origins, SceneFile};
+use crate::scene_file::{Options, Origins, SceneFile, read_whole};
 use crate::vfs::Files;
 
 /// Files that are included one in the other.
@@ -61,13 +61,7 @@ const MAX_FILES: usize = 1000;
 ///
 /// All that is wrong with the scene, and the warnings with it.
 pub fn read_scene(path: &Path, files: &dyn Files, options: &Options) -> Result<SceneFile, Diagnostics> {
-    match files.read(path) {
-        Ok(bytes) => read_bytes(path, bytes, files, options),
-        Err(error) => {
-            let message = format!("cannot read \"{}\": {error}", path.display());
-            Err(Diagnostics(vec![Diagnostic::global_error(message)]))
-        }
-    }
+    read_bytes(path, read_whole(path, files)?, files, options)
 }
 
 /// Reads a scene from a text. `name` is what messages call it; the folder in it, if any, is where
@@ -93,12 +87,7 @@ fn read_bytes(
 ) -> Result<SceneFile, Diagnostics> {
     let log = Log::default();
     let file = interpret(path, bytes, files, options, &log);
-    let has_errors = log.has_errors();
-    let messages = log.into_list();
-    match file {
-        Some(file) if !has_errors => Ok(SceneFile { warnings: messages, ..file }),
-        _ => Err(Diagnostics(messages)),
-    }
+    SceneFile::read(file, log)
 }
 
 fn interpret(
