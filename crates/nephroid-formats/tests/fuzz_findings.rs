@@ -4,7 +4,9 @@
 use std::path::Path;
 
 use nephroid_formats::Options;
-use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply};
+use nephroid_formats::ies::read_ies;
+use nephroid_formats::image::read_texture;
+use nephroid_formats::mesh::{MeshOptions, read_obj, read_ply, read_serialized};
 use nephroid_formats::mitsuba::read_scene_str;
 use nephroid_formats::vfs::MemoryFiles;
 use nephroid_formats::volume::read_vol;
@@ -27,6 +29,20 @@ fn seeds_of_meshes_can_be_read() {
     for (name, bytes) in seeds("ply") {
         read_ply(&bytes, MeshOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
+    for (name, bytes) in seeds("serialized") {
+        read_serialized(&bytes, 0, MeshOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+#[test]
+fn seeds_of_pictures_and_light_profiles_can_be_read() {
+    for (name, bytes) in seeds("image") {
+        read_texture(&bytes, false).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    for (name, bytes) in seeds("ies") {
+        let text = String::from_utf8(bytes).expect("a seed is a text");
+        read_ies(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
 }
 
 #[test]
@@ -43,8 +59,10 @@ fn seeds_of_scenes_can_be_read() {
     let files = MemoryFiles::default()
         .with("m.obj", file("obj/quad.obj"))
         .with("m.ply", file("ply/ascii.ply"))
-        .with("i.png", file("two_pixels.png"))
+        .with("m.serialized", file("serialized/single.serialized"))
+        .with("i.png", file("image/two_pixels.png"))
         .with("v.vol", file("vol/floats.vol"))
+        .with("l.ies", file("ies/quarter.ies"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
         .with("p.xml", "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"p\"/></scene>");
     let options = Options { defines: Vec::new(), lenient: true };
@@ -58,7 +76,7 @@ fn seeds_of_scenes_can_be_read() {
 
 #[test]
 fn seeds_of_models_can_be_read() {
-    let pixels = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds/two_pixels.png"));
+    let pixels = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds/image/two_pixels.png"));
     let files = MemoryFiles::default().with("i.png", pixels.expect("a seed can be read"));
     for (name, bytes) in seeds("gltf") {
         let files = files.clone().with("s.gltf", bytes);

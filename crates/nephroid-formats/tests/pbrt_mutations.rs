@@ -17,7 +17,7 @@ const SCENES: [&str; 4] = [
 fn files(scene: &str) -> MemoryFiles {
     MemoryFiles::default()
         .with("m.ply", *include_bytes!("../fuzz/seeds/ply/ascii.ply"))
-        .with("i.png", *include_bytes!("../fuzz/seeds/two_pixels.png"))
+        .with("i.png", *include_bytes!("../fuzz/seeds/image/two_pixels.png"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
         .with("p.pbrt", "Material \"diffuse\" Shape \"sphere\"")
         .with("s.pbrt", scene)

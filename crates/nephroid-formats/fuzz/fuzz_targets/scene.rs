@@ -1,50 +1,32 @@
 //! Any bytes as a scene file: messages that can be shown, or a scene that `World::new` takes or refuses.
 //!
-//! The files that a scene can name are in memory: a mesh of each kind, a picture, a volume, a spectrum, an included
-//! file, and the scene itself.
+//! The files that a scene can name are in memory: a mesh of each kind, a picture, a volume, a spectrum, a light profile, an
+//! included file, and the scene itself.
 #![no_main]
 
 use std::path::Path;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use nephroid::world::World;
 use nephroid_formats::mitsuba::read_scene;
-use nephroid_formats::Options;
 use nephroid_formats::vfs::MemoryFiles;
+
+#[path = "../scene_file.rs"]
+mod scene_file;
 
 static FILES: LazyLock<MemoryFiles> = LazyLock::new(|| {
     MemoryFiles::default()
         .with("m.obj", *include_bytes!("../seeds/obj/quad.obj"))
         .with("m.ply", *include_bytes!("../seeds/ply/ascii.ply"))
-        .with("i.png", *include_bytes!("../seeds/two_pixels.png"))
+        .with("m.serialized", *include_bytes!("../seeds/serialized/single.serialized"))
+        .with("i.png", *include_bytes!("../seeds/image/two_pixels.png"))
         .with("v.vol", *include_bytes!("../seeds/vol/floats.vol"))
+        .with("l.ies", *include_bytes!("../seeds/ies/quarter.ies"))
         .with("s.spd", "400 0.1\n500 0.5\n700 0.2\n")
         .with("p.xml", "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"p\"/></scene>")
 });
 
 fuzz_target!(|bytes: &[u8]| {
     let files = FILES.clone().with("s.xml", bytes);
-    for lenient in [false, true] {
-        match read_scene(Path::new("s.xml"), &files, &Options { defines: Vec::new(), lenient }) {
-            Ok(file) => {
-                assert!(file.warnings.iter().take(2).all(|w| !w.render(false).is_empty()));
-                assert_eq!(file.origins.shapes.len(), file.scene.shapes.len());
-                assert_eq!(file.origins.lights.len(), file.scene.lights.len());
-                assert_eq!(file.origins.materials.len(), file.scene.materials.len());
-                assert_eq!(file.origins.media.len(), file.scene.media.list.len());
-                assert_eq!(file.origins.grids.len(), file.scene.media.grids.len());
-                if let Err(errors) = World::new(file.scene) {
-                    assert!(errors.0.iter().all(|error| !error.message.is_empty()));
-                }
-                return;
-            }
-            Err(diagnostics) => {
-                assert!(!diagnostics.0.is_empty());
-                assert!(!diagnostics.to_string().is_empty());
-                // Drawing one takes longer than reading a scene, and one is like the other.
-                assert!(diagnostics.0.iter().take(2).all(|d| !d.render(true).is_empty()));
-            }
-        }
-    }
+    scene_file::check(|options| read_scene(Path::new("s.xml"), &files, options));
 });
