@@ -12,7 +12,7 @@ use crate::world::{Hit, Surroundings, World};
 /// A vertex of a light path, to be connected to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightVertex {
-    pub surface: Option<(Hit, Bsdf)>,
+    pub surface: Option<Hit>,
     pub position: Vec3,
     pub phase: Phase,
     pub wo: Vec3,
@@ -31,15 +31,22 @@ pub(super) struct LightVertex {
 impl LightVertex {
     pub fn new(lit: &Lit<'_>, place: Place, power: Rgb, depth: u32, back: f32) -> Self {
         let (surface, position, phase) = match lit.scatterer {
-            Scatterer::Surface { hit, bsdf } => (Some((*hit, *bsdf)), hit.point.position, Phase::Isotropic),
+            Scatterer::Surface { hit, .. } => (Some(*hit), hit.point.position, Phase::Isotropic),
             Scatterer::Medium { position, phase } => (None, position, phase),
         };
         let (wo, inside) = (lit.wo, lit.inside);
         Self { surface, position, phase, wo, inside, place, power, depth, back, nodes: [0; 2] }
     }
 
-    pub fn lit(&self) -> Lit<'_> {
-        let scatterer = match &self.surface {
+    /// How its surface scatters, if it is on one. It is not kept: that would take more memory than all else of the vertex,
+    /// and about as long to read as to find again.
+    pub fn bsdf(&self, world: &World) -> Option<Bsdf> {
+        self.surface.as_ref().map(|hit| world.bsdf_within(hit, self.wo, &self.inside))
+    }
+
+    /// `bsdf` is that of [`bsdf`](Self::bsdf).
+    pub fn lit<'a>(&'a self, bsdf: Option<&'a Bsdf>) -> Lit<'a> {
+        let scatterer = match self.surface.as_ref().zip(bsdf) {
             Some((hit, bsdf)) => Scatterer::Surface { hit, bsdf },
             None => Scatterer::Medium { position: self.position, phase: self.phase },
         };
@@ -49,7 +56,7 @@ impl LightVertex {
     /// What rays that are sent to it end at.
     pub fn source(&self) -> Source {
         match &self.surface {
-            Some((hit, _)) => Source::Surface(hit.point),
+            Some(hit) => Source::Surface(hit.point),
             None => Source::Point(self.position),
         }
     }

@@ -137,8 +137,13 @@ impl Camera<'_> {
         let way = vertex.position - from.position();
         let distance_sq = way.length_squared();
         let Some(wi) = way.try_normalize() else { return Rgb::BLACK };
-        let there = vertex.lit();
-        let scattered = lit.eval(wi) * vertex.power * there.spread(-wi) / distance_sq;
+        let carried = lit.eval(wi) * vertex.power / distance_sq;
+        if carried.is_black() {
+            return Rgb::BLACK;
+        }
+        let bsdf = vertex.bsdf(world);
+        let there = vertex.lit(bsdf.as_ref());
+        let scattered = carried * there.spread(-wi);
         if scattered.is_black() {
             return Rgb::BLACK;
         }
