@@ -8,6 +8,7 @@ const READ: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
@@ -35,7 +36,6 @@ const READ: &[&str] = &[
 /// Those without which a picture is still much as it was meant.
 const LOOKS: &[&str] = &[
     "KHR_materials_diffuse_transmission",
-    "KHR_materials_dispersion",
     "KHR_materials_iridescence",
     "KHR_materials_volume_scatter",
     "KHR_materials_subsurface",
@@ -85,8 +85,8 @@ pub(super) fn check(root: Item, lenient: bool) {
         let Some(name) = item.as_text().filter(|name| !READ.contains(name)) else { continue };
         let is_required = required.iter().any(|other| other.as_text() == Some(name));
         // What stands for a packed part is looked for where it is needed.
-        let has_own_message = PACKED.iter().any(|(packed, _)| *packed == name)
-            || matches!(name, "KHR_materials_dispersion" | "KHR_materials_iridescence");
+        let has_own_message =
+            PACKED.iter().any(|(packed, _)| *packed == name) || name == "KHR_materials_iridescence";
         if !is_required && !has_own_message {
             item.warn(format!("the extension {name} is not read"));
         }

@@ -2,7 +2,7 @@
 
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
-use nephroid::material::{Material, MetallicRoughness};
+use nephroid::material::{Dispersion, Material, MetallicRoughness};
 use nephroid::math::real::ln;
 use nephroid::medium::{Medium, Phase};
 use nephroid::texture::Texture;
@@ -49,7 +49,12 @@ impl<'d> Reader<'d> {
             }
         }
         self.what_lacks(material);
-        let handle = self.store_material(material, Material::MetallicRoughness(Box::new(out)));
+        let ior = out.ior;
+        let bends = transmits && !out.thin && ior > 1.0;
+        let mut handle = self.store_material(material, Material::MetallicRoughness(Box::new(out)));
+        if let Some(dispersion) = dispersion(material, ior).filter(|_| bends) {
+            handle = self.store_material(material, Material::Dispersive { dispersion, inside: handle });
+        }
         Surface { handle, transmits, medium }
     }
 
@@ -180,10 +185,17 @@ impl<'d> Reader<'d> {
         if is_on("KHR_materials_iridescence", "iridescenceFactor") {
             self.once(material, "iridescence is not read: thin films have no colours");
         }
-        if is_on("KHR_materials_dispersion", "dispersion") {
-            self.once(material, "dispersion is not read: glass refracts all colours alike");
-        }
     }
+}
+
+/// How strongly glass takes light apart: the extension's number is 20 over the one of Abbe.
+fn dispersion(material: Item, ior: f32) -> Option<Dispersion> {
+    let extension = material.extension("KHR_materials_dispersion")?;
+    let strength = extension.number("dispersion").unwrap_or(0.0);
+    if strength < 0.0 {
+        extension.error("\"dispersion\" must not be negative");
+    }
+    (strength > 0.0).then(|| Dispersion::from_abbe(ior, 20.0 / strength as f32))
 }
 
 /// A factor between 0 and 1, in all channels.

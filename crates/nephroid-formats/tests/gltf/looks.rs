@@ -1,7 +1,7 @@
 //! Materials and textures of good models, and of some that are bad.
 
 use nephroid::color::Rgb;
-use nephroid::material::{Material, MetallicRoughness};
+use nephroid::material::{Dispersion, Material, MetallicRoughness};
 use nephroid::math::Vec2;
 use nephroid::medium::Coefficient;
 use nephroid::texture::{Bitmap, BitmapFilter, Image, Texture, TexturePoint, Wrap};
@@ -228,6 +228,34 @@ fn glass_with_a_thickness_encloses_what_absorbs() {
 }
 
 #[test]
+fn glass_takes_light_apart_if_it_is_thick() {
+    let material = |thickness: f32, dispersion: f32| {
+        painted(
+            json!({ "extensions": {
+                "KHR_materials_transmission": { "transmissionFactor": 1.0 },
+                "KHR_materials_ior": { "ior": 1.7 },
+                "KHR_materials_volume": { "thicknessFactor": thickness },
+                "KHR_materials_dispersion": { "dispersion": dispersion },
+            }}),
+            false,
+        )
+    };
+    let dispersion_of = |file: &SceneFile| {
+        let scene = &file.scene;
+        Material::dispersion(&scene.materials, scene.shapes[0].material)
+    };
+    let (file, warnings) = material(1.0, 0.8).good();
+    assert_eq!(warnings, "");
+    assert_eq!(dispersion_of(&file), Some(Dispersion::from_abbe(1.7, 25.0)));
+    World::new(file.scene).expect("it can be rendered");
+    for (thickness, dispersion) in [(0.0, 0.8), (1.0, 0.0)] {
+        let (file, _) = material(thickness, dispersion).good();
+        assert_eq!(dispersion_of(&file), None);
+    }
+    material(1.0, -0.1).fails_with("\"dispersion\" must not be negative");
+}
+
+#[test]
 fn further_lobes_are_read() {
     let texture = json!({ "index": 0 });
     let material = json!({ "extensions": {
@@ -236,13 +264,9 @@ fn further_lobes_are_read() {
         "KHR_materials_specular": { "specularFactor": 0.5, "specularTexture": texture, "specularColorFactor": [2, 1, 1] },
         "KHR_materials_anisotropy": { "anisotropyStrength": 0.5, "anisotropyRotation": 1.0, "anisotropyTexture": texture },
         "KHR_materials_iridescence": { "iridescenceFactor": 1.0 },
-        "KHR_materials_dispersion": { "dispersion": 0.1 },
     }});
     let (file, warnings) = painted(material, true).good();
-    assert!(
-        warnings.contains("iridescence is not read") && warnings.contains("dispersion is not read"),
-        "{warnings}"
-    );
+    assert!(warnings.contains("iridescence is not read"), "{warnings}");
     let (_, found) = inside(&file);
     let value = |texture| file.scene.textures.eval(texture, at(0.25));
     near(value(found.clearcoat), Rgb::splat(0.5 * 0.2));

@@ -7,7 +7,7 @@ use super::diffuse_transmission::DiffuseTransmission;
 use super::disney::Disney;
 use super::disney_diffuse::Base;
 use super::fresnel::fresnel_dielectric;
-use super::gltf::Gltf;
+use super::gltf::{Gltf, LEAST_ETA};
 use super::lambertian::Lambertian;
 use super::microfacet::Microfacet;
 use super::mixture::{Blend, MOST_PARTS, Weighed};
@@ -23,9 +23,6 @@ use crate::color::Rgb;
 use crate::handle::{Arena, Handle};
 use crate::math::{Vec2, Vec3, real};
 use crate::texture::{Texture, TexturePoint, Textures};
-
-/// The least index of a boundary that refracts: nearer to one the way of light does not tell its facet.
-const LEAST_ETA: f32 = 1.001;
 
 impl Material {
     /// How the material scatters at a point, seen from the side of `wo`: textures are read here and

@@ -162,7 +162,7 @@ impl Bsdf {
     pub(crate) fn dispersing(self) -> Self {
         let disperses = match &self.lobes {
             Lobes::Dielectric(_) => true,
-            Lobes::One(one) => matches!(one.part, Part::RoughDielectric(_)),
+            Lobes::One(one) => one.part.is_rough_lens(),
             _ => false,
         };
         Self { disperses, ..self }

@@ -100,18 +100,22 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
         Material::Dispersive { dispersion, inside } => {
             problems.list.extend(dispersion.problem());
             problems.stored_before("inside", materials, material, *inside);
-            if materials.contains(*inside)
-                && !matches!(
-                    materials[*inside],
-                    Material::Dielectric { .. } | Material::RoughDielectric { .. }
-                )
-            {
+            if materials.contains(*inside) && !bends_light(&materials[*inside]) {
                 problems.add("only a dielectric can be dispersive");
             }
         }
         Material::Null => {}
     }
     problems.list
+}
+
+/// Whether it is the boundary of two dielectrics.
+fn bends_light(material: &Material) -> bool {
+    match material {
+        Material::Dielectric { .. } | Material::RoughDielectric { .. } => true,
+        Material::MetallicRoughness(of) => !of.thin,
+        _ => false,
+    }
 }
 
 struct Problems<'a> {

@@ -12,6 +12,9 @@ use super::rough_dielectric::{facet_between, refract_at, refraction, refraction_
 use crate::color::Rgb;
 use crate::math::{Vec2, Vec3, warp};
 
+/// The least index of a boundary that refracts: nearer to one the way of light does not tell its facet.
+pub const LEAST_ETA: f32 = 1.001;
+
 /// The lobes by number.
 const MAIN: usize = 0;
 const THROUGH: usize = 1;
@@ -55,6 +58,16 @@ impl Gltf {
 
     fn base(&self) -> Rgb {
         self.color * ((1.0 - self.metallic) * (1.0 - self.transmission))
+    }
+
+    /// Whether light on its way through is bent.
+    pub fn refracts(&self) -> bool {
+        !self.is_thin() && self.clear() > 0.0
+    }
+
+    /// The same for light of another index. What is reflected stays: it is given by colours, not by the index.
+    pub fn with_eta(self, eta: f32) -> Self {
+        if self.is_thin() { self } else { Self { eta: eta.max(LEAST_ETA), ..self } }
     }
 
     fn is_thin(&self) -> bool {
@@ -236,5 +249,38 @@ impl Scatter for Gltf {
     fn radiance_scale(&self, lobe: usize, wo: Vec3, _: Vec3) -> f32 {
         let eta = self.eta_from(wo);
         if lobe == THROUGH { 1.0 / (eta * eta) } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Distribution;
+    use super::*;
+
+    #[test]
+    fn light_of_another_index_is_refracted_by_it() {
+        let smooth = Microfacet::new(Distribution::Ggx, 0.0, 0.0);
+        let glass = Gltf {
+            color: Rgb::WHITE,
+            metallic: 0.0,
+            transmission: 1.0,
+            f0: Rgb::splat(0.04),
+            f90: 1.0,
+            eta: 1.5,
+            facets: smooth,
+            turn: Vec2::X,
+            clearcoat: 0.0,
+            coat_facets: smooth,
+            sheen: Charlie::new(Rgb::BLACK, 0.0),
+        };
+        assert!(glass.refracts());
+        for eta in [1.5, 1.7, 1.0] {
+            let wi = glass.with_eta(eta).sample(THROUGH, Vec3::new(0.6, 0.0, 0.8), Vec2::splat(0.5), 0.5);
+            let wi = wi.expect("nothing is reflected totally on the way in");
+            // Facets lean by about their α.
+            assert!((wi.x + 0.6 / eta).abs() < 0.01 && wi.z < 0.0, "{eta}: {wi}");
+        }
+        let sheet = Gltf { eta: 1.0, ..glass };
+        assert!(!sheet.refracts() && sheet.with_eta(1.7) == sheet);
     }
 }

@@ -57,7 +57,7 @@ macro_rules! each {
 }
 
 impl Part {
-    /// Whether it is the boundary of two dielectrics, with the index inside relative to outside.
+    /// The same with another index inside relative to outside, if it is the boundary of two dielectrics.
     pub fn with_eta(self, eta: f32) -> Self {
         match self {
             Self::Dielectric(Clear(own)) => Self::Dielectric(Clear(Dielectric { eta, ..own })),
@@ -67,7 +67,17 @@ impl Part {
                 transmittance: own.transmittance,
             })),
             Self::RoughDielectric(own) => Self::RoughDielectric(RoughDielectric { eta, ..own }),
+            Self::MetallicRoughness(own) => Self::MetallicRoughness(own.with_eta(eta)),
             _ => self,
+        }
+    }
+
+    /// Whether it is rough, and bends light by its index.
+    pub fn is_rough_lens(&self) -> bool {
+        match self {
+            Self::RoughDielectric(_) => true,
+            Self::MetallicRoughness(own) => own.refracts(),
+            _ => false,
         }
     }
 }
