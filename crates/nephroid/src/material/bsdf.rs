@@ -2,15 +2,12 @@ use std::f32::consts::PI;
 
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
-use super::fresnel::mirror;
 use super::kind::{Classes, LobeKind};
 use super::lambertian::Lambertian;
 use super::mixture::{self, Blend, Chances, Weighed};
-use super::part::Part;
 use super::phong::Phong;
-use super::split::Split;
 use crate::color::Rgb;
-use crate::math::{Frame, Vec2, Vec3};
+use crate::math::{Frame, Vec3};
 
 /// What a walk carries, and so which of two adjoint scattering rules it follows (Veach 1997,
 /// *Robust Monte Carlo Methods for Light Transport Simulation*, chapter 5).
@@ -36,40 +33,6 @@ impl Transport {
     }
 }
 
-/// A direction drawn by [`Bsdf::sample`], or one of [`Bsdf::dirac_lobes`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BsdfSample {
-    /// The unit direction of the next segment, leaving the surface.
-    pub wi: Vec3,
-    /// f·|cos θ_i| / pdf, with the cosine to the *shading* normal and all that the [`Transport`] asks
-    /// for: what the walk multiplies its radiance or power by.
-    pub weight: Rgb,
-    /// The factor in `weight` that is no gain or loss of light, but the change of radiance between
-    /// media, (η_o/η_i)²; 1 but for refracted radiance. Roulette must leave it out: it is undone
-    /// where the path comes out of the medium.
-    pub radiance_scale: f32,
-    /// The density of `wi` per solid angle among all lobes that have one, whichever was drawn; 0 for a Dirac lobe.
-    pub pdf_solid_angle: f32,
-    /// The class of the lobe that was drawn.
-    pub lobe: LobeKind,
-    /// Whether `wi` lies on the other side of the geometry than `wo`.
-    pub transmitted: bool,
-}
-
-impl BsdfSample {
-    /// Whether the lobe is a Dirac.
-    #[inline]
-    pub fn is_dirac(&self) -> bool {
-        self.lobe == LobeKind::Dirac
-    }
-
-    /// Whether the lobe is too narrow for a density to be estimated from photons.
-    #[inline]
-    pub fn is_specular(&self) -> bool {
-        self.lobe != LobeKind::Broad
-    }
-}
-
 /// Segments that a path has more behind a surface: none where it goes straight on, as through thin glass. Mitsuba's
 /// `volpath` counts so.
 pub(crate) fn segments_by(wo: Vec3, wi: Vec3) -> u32 {
@@ -90,12 +53,12 @@ pub(crate) fn segments_by(wo: Vec3, wi: Vec3) -> u32 {
 /// `wi` it is, so that camera paths and photons agree on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bsdf {
-    ng: Vec3,
-    frame: Frame,
-    lobes: Lobes,
+    pub(super) ng: Vec3,
+    pub(super) frame: Frame,
+    pub(super) lobes: Lobes,
     disperses: bool,
     /// Those classes of a mixture's lobes that count.
-    among: Classes,
+    pub(super) among: Classes,
 }
 
 /// The kinds of scattering; one file each.
@@ -116,7 +79,7 @@ pub(super) enum Lobes {
 impl Lobes {
     /// What mixtures are made of; nothing of simple ones.
     #[inline]
-    fn parts(&self) -> &[Weighed] {
+    pub fn parts(&self) -> &[Weighed] {
         match self {
             Self::One(one) => std::slice::from_ref(one),
             Self::Blend(blend) => blend.parts(),
@@ -326,7 +289,7 @@ impl Bsdf {
 
     /// A direction in the shading frame; `None` between the two tangent planes.
     #[inline]
-    fn local(&self, w: Vec3) -> Option<Vec3> {
+    pub(super) fn local(&self, w: Vec3) -> Option<Vec3> {
         let local = self.frame.to_local(w);
         (local.z * w.dot(self.ng) > 0.0).then_some(local)
     }
@@ -350,90 +313,6 @@ impl Bsdf {
             chances.pdf(parts, Classes::of(LobeKind::Sharp), o, i)
                 + chances.pdf(parts, Classes::of(LobeKind::Broad), o, i)
         })
-    }
-
-    /// Draws a direction from uniform numbers in [0, 1), `u_lobe` choosing between lobes. `None` where
-    /// the walk ends: the surface is black or the direction drawn is on the wrong side.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {
-        let wi = match &self.lobes {
-            Lobes::Diffuse(lambertian) => return self.sample_diffuse(lambertian, wo, u, transport),
-            Lobes::Phong(phong) => phong.sample(&self.frame, wo, u, u_lobe),
-            Lobes::One(_) | Lobes::Blend(_) => return self.sample_mixture(wo, u, u_lobe, transport),
-            _ => return self.sample_dirac(wo, u_lobe, transport),
-        };
-        let wi = wi.normalize();
-        let pdf_solid_angle = self.pdf(wo, wi);
-        if pdf_solid_angle > 0.0 {
-            let weight = self.eval(wo, wi) * (self.cosine(wi) / pdf_solid_angle);
-            let weight = weight * self.carried(wo, wi, transport);
-            let (lobe, transmitted) = (LobeKind::Broad, false);
-            Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, lobe, transmitted })
-        } else {
-            None
-        }
-    }
-
-    /// The cosine and the density cancel to the albedo.
-    #[inline]
-    fn sample_diffuse(
-        &self,
-        lambertian: &Lambertian,
-        wo: Vec3,
-        u: Vec2,
-        transport: Transport,
-    ) -> Option<BsdfSample> {
-        let wi = Lambertian::sample(&self.frame, u).normalize();
-        let pdf_solid_angle = Lambertian::pdf(self.frame.n, wi);
-        if pdf_solid_angle == 0.0 || !self.both_above(wo, wi) {
-            return None;
-        }
-        let weight = lambertian.albedo * self.carried(wo, wi, transport);
-        let (lobe, transmitted) = (LobeKind::Broad, false);
-        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle, lobe, transmitted })
-    }
-
-    /// A class is chosen first, in proportion to what it scatters, and then a direction by that class alone: its f·cos
-    /// over its own density is the weight.
-    fn sample_mixture(&self, wo: Vec3, u: Vec2, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {
-        let parts = self.lobes.parts();
-        let Some(o) = self.local(wo) else {
-            // Only what goes straight on is there.
-            return self.sample_dirac(wo, u_lobe, transport);
-        };
-        let chances = Chances::new(parts, self.among, o)?;
-        let drawn = chances.draw(u_lobe);
-        if drawn.class == Classes::DIRAC {
-            let chance = chances.of_classes(Classes::DIRAC);
-            let sample = self.sample_dirac(wo, drawn.u_lobe, transport)?;
-            return Some(BsdfSample { weight: sample.weight / chance, ..sample });
-        }
-        let wi = self.frame.to_world(drawn.sample(parts, o, u)?).normalize();
-        let i = self.local(wi)?;
-        let lobe = drawn.class.kind();
-        let [sharp, broad] =
-            [LobeKind::Sharp, LobeKind::Broad].map(|kind| chances.pdf(parts, Classes::of(kind), o, i));
-        let own = if lobe == LobeKind::Sharp { sharp } else { broad };
-        let f = mixture::eval(parts, self.among.and(Classes::of(lobe)), o, i, transport);
-        if !(own > 0.0 && own.is_finite()) || f.is_black() {
-            return None;
-        }
-        let weight = f * (self.cosine(wi) / own * self.carried(wo, wi, transport));
-        let radiance_scale = match transport {
-            Transport::Radiance => drawn.radiance_scale(parts, o, i),
-            Transport::Flux => 1.0,
-        };
-        let transmitted = o.z * i.z < 0.0;
-        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: sharp + broad, lobe, transmitted })
-    }
-
-    /// The Dirac lobes, reflection first and then transmission, each with its full weight: following
-    /// both is what [`sample`](Self::sample) does on average.
-    pub fn dirac_lobes(&self, wo: Vec3, transport: Transport) -> [Option<BsdfSample>; 2] {
-        match self.split(wo) {
-            None => [None, None],
-            Some(split) => [self.reflection(wo, &split, transport), self.transmission(wo, &split, transport)],
-        }
     }
 
     /// What makes power of radiance's rule where shading normals differ from geometric ones:
@@ -463,89 +342,18 @@ impl Bsdf {
 
     /// Whether both directions are above the surface, by either normal.
     #[inline]
-    fn both_above(&self, wo: Vec3, wi: Vec3) -> bool {
+    pub(super) fn both_above(&self, wo: Vec3, wi: Vec3) -> bool {
         let above = |w: Vec3| w.dot(self.ng) > 0.0 && w.dot(self.frame.n) > 0.0;
         above(wo) && above(wi)
     }
 
     /// The factor on f cos/pdf that depends on what is carried, refraction's aside.
     #[inline]
-    fn carried(&self, wo: Vec3, wi: Vec3, transport: Transport) -> f32 {
+    pub(super) fn carried(&self, wo: Vec3, wi: Vec3, transport: Transport) -> f32 {
         match transport {
             Transport::Radiance => 1.0,
             Transport::Flux => self.adjoint_factor(wo, wi),
         }
-    }
-
-    /// The Dirac lobes as seen from `wo`, if there are any.
-    fn split(&self, wo: Vec3) -> Option<Split> {
-        let outside = wo.dot(self.ng) > 0.0;
-        let n = self.facing(self.frame.n, wo);
-        match &self.lobes {
-            Lobes::Null => Some(Split::pass(wo, Rgb::WHITE)),
-            Lobes::Conductor(conductor) if outside => Some(conductor.split(wo.dot(n))),
-            Lobes::Dielectric(dielectric) => Some(dielectric.split(wo, n, outside)),
-            Lobes::ThinDielectric(thin) => Some(thin.split_thin(wo, wo.dot(n))),
-            Lobes::One(_) | Lobes::Blend(_) if self.among.meets(Classes::DIRAC) => self.split_mixture(wo),
-            _ => None,
-        }
-    }
-
-    fn split_mixture(&self, wo: Vec3) -> Option<Split> {
-        let local = self.frame.to_local(wo);
-        let mut split = mixture::split(self.lobes.parts(), local)?;
-        if let Some(refraction) = &mut split.refraction {
-            let straight = refraction.wi == -local;
-            refraction.wi = if straight { -wo } else { self.frame.to_world(refraction.wi).normalize() };
-        }
-        Some(split)
-    }
-
-    fn sample_dirac(&self, wo: Vec3, u_lobe: f32, transport: Transport) -> Option<BsdfSample> {
-        let split = self.split(wo)?;
-        let reflect = u_lobe < split.reflect_probability;
-        let (lobe, probability) = if reflect {
-            (self.reflection(wo, &split, transport), split.reflect_probability)
-        } else {
-            (self.transmission(wo, &split, transport), 1.0 - split.reflect_probability)
-        };
-        lobe.map(|sample| BsdfSample { weight: sample.weight / probability, ..sample })
-    }
-
-    fn reflection(&self, wo: Vec3, split: &Split, transport: Transport) -> Option<BsdfSample> {
-        let n = self.facing(self.frame.n, wo);
-        let wi = mirror(wo, n).normalize();
-        let ng = self.facing(self.ng, wo);
-        let seen = wo.dot(n) > 0.0 && wi.dot(n) > 0.0 && wi.dot(ng) > 0.0;
-        if !seen || split.reflectance.is_black() {
-            return None;
-        }
-        let weight = split.reflectance * self.carried(wo, wi, transport);
-        let (lobe, transmitted) = (LobeKind::Dirac, false);
-        Some(BsdfSample { wi, weight, radiance_scale: 1.0, pdf_solid_angle: 0.0, lobe, transmitted })
-    }
-
-    fn transmission(&self, wo: Vec3, split: &Split, transport: Transport) -> Option<BsdfSample> {
-        let refraction = split.refraction?;
-        let wi = refraction.wi;
-        let (n, ng) = (self.facing(self.frame.n, wo), self.facing(self.ng, wo));
-        let seen = wi == -wo || (wo.dot(n) > 0.0 && wi.dot(n) < 0.0 && wi.dot(ng) < 0.0);
-        if !seen || refraction.transmittance.is_black() {
-            return None;
-        }
-        let radiance_scale = match transport {
-            Transport::Radiance => refraction.radiance_scale,
-            Transport::Flux => 1.0,
-        };
-        let weight = refraction.transmittance * (radiance_scale * self.carried(wo, wi, transport));
-        let (lobe, transmitted) = (LobeKind::Dirac, true);
-        Some(BsdfSample { wi, weight, radiance_scale, pdf_solid_angle: 0.0, lobe, transmitted })
-    }
-
-    /// A normal of the surface, turned to the side of `wo`.
-    #[inline]
-    fn facing(&self, normal: Vec3, wo: Vec3) -> Vec3 {
-        if wo.dot(self.ng) > 0.0 { normal } else { -normal }
     }
 }
 

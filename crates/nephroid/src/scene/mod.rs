@@ -2,6 +2,9 @@
 
 mod check;
 mod check_lights;
+mod check_shapes;
+#[cfg(test)]
+mod check_tests;
 mod error;
 
 pub(crate) use check::check;
