@@ -253,3 +253,76 @@ fn settle((rows, count): (&Rows, usize), mut lanes: u32, ray: &Ray, sheared: &Sh
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{Simd, Work};
+    use crate::math::warp;
+    use crate::sampling::{Key, Sampler, Sequence, Stream};
+
+    /// The hits of a leaf, lane by lane.
+    struct All<'a>(&'a Triangles, TriangleLeaf, Ray);
+
+    impl Work for All<'_> {
+        type Output = Vec<(usize, Intersection)>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let sheared = ShearedRay::new(self.2.direction);
+            let lanes = ShearedLanes::<L>::new(&self.2, &sheared);
+            let mut hits = self.0.intersect(self.1, &self.2, &sheared, &lanes, self.2.t_max);
+            let mut list = Vec::new();
+            while let Some(hit) = hits.next() {
+                list.push(hit);
+            }
+            list
+        }
+    }
+
+    #[test]
+    fn leaves_of_any_size_meet_what_their_triangles_meet() {
+        let sampler = |i| Sampler::new(Sequence::Independent, Key::new(7, 0, Stream::Camera), i);
+        let mut corners = sampler(0);
+        // Triangles as large as what they are in, so that rays meet many, and what is beside a leaf is met, too.
+        let positions: Vec<Vec3> =
+            (0..3 * 36).map(|_| warp::square_to_sphere(corners.next_2d()) * corners.next_1d()).collect();
+        let mesh = Mesh {
+            positions,
+            triangles: (0..36).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+            ..Mesh::default()
+        };
+        let mut all = Triangles::with_capacity(36);
+        let mut leaves = Vec::new();
+        let mut next = 0;
+        for count in [3, 8, 1, 5, 2, 7, 4, 6] {
+            leaves.push((next, all.add((next..next + count).map(|index| (5, &mesh, index)))));
+            next += count;
+        }
+        all.finish();
+        // 44 bytes a triangle, and what is read beyond the last.
+        assert_eq!((next, all.bytes()), (36, 36 * 44 + 7 * 36));
+        let mut met = 0;
+        for i in 1..500 {
+            let mut s = sampler(i);
+            let origin = warp::square_to_sphere(s.next_2d()) * 2.0;
+            let to = warp::square_to_sphere(s.next_2d()) * s.next_1d();
+            let ray = Ray::new(origin, (to - origin).normalize());
+            let sheared = ShearedRay::new(ray.direction);
+            for (number, &(first, leaf)) in leaves.iter().enumerate() {
+                let count = leaf.count() as u32;
+                let expected: Vec<(usize, Intersection)> = (0..count)
+                    .filter_map(|k| {
+                        let hit = Triangle::new(&mesh, 0, first + k).intersect(&ray, &sheared)?;
+                        assert_eq!(all.name(leaf, k as usize), [5, first + k]);
+                        Some((k as usize, hit))
+                    })
+                    .collect();
+                for simd in [Simd::Portable, Simd::detect()] {
+                    assert_eq!(simd.run(All(&all, leaf, ray)), expected, "leaf {number}, {simd:?}");
+                }
+                met += expected.len();
+            }
+        }
+        assert!(met > 500, "{met}");
+    }
+}

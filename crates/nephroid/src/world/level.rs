@@ -114,7 +114,7 @@ impl Level {
     pub fn new(work: &Work<'_>, items: &Items<'_>, infinite: Vec<u32>) -> Self {
         let (mut flats, mut others) = (Vec::new(), Vec::new());
         let count = items.list.iter().filter(|item| matches!(item.unpacked(), Item::Triangle { .. })).count();
-        let mut triangles = Triangles::with_capacity(count);
+        let mut triangles = Triangles::default();
         let kind = |i: u32| match items.list[i as usize].unpacked() {
             Item::Triangle { .. } => Kind::Triangles,
             Item::Other(Other::Primitive(p))
@@ -128,6 +128,10 @@ impl Level {
             let members = list.iter().map(|&i| items.list[i as usize].unpacked());
             let number = match kind {
                 Kind::Triangles => {
+                    // Not before: to part and cluster boxes takes memory that is free by now.
+                    if triangles.is_empty() {
+                        triangles = Triangles::with_capacity(count);
+                    }
                     let leaf = triangles.add(members.filter_map(|item| match item {
                         Item::Triangle { shape, index } => Some((shape, items.mesh(shape), index)),
                         Item::Other(_) => None,
