@@ -18,7 +18,7 @@ pub fn run(args: &ConvertArgs) -> Result<Exit, Failure> {
             out.display()
         )));
     }
-    let file = load::load(&args.scene, &args.reading)?;
+    let file = load::load(&args.scene, &args.reading, false)?;
     for warning in &file.warnings {
         console::diagnostic(warning);
     }

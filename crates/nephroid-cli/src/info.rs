@@ -26,14 +26,14 @@ use crate::plan::Plan;
 /// Reads a scene, prepares it as if to be rendered, and tells about it.
 pub fn run(args: &InfoArgs) -> Result<Exit, Failure> {
     let mut messages = Messages::new(false);
-    let file = load::load(&args.scene, &args.reading)?;
+    let file = load::load(&args.scene, &args.reading, false)?;
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
     let method =
         method::choose(None, &file, &PhotonFlags::default(), method::Integrator::Auto, &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
-    let world = load::world(file.scene, &file.origins)?;
+    let world = load::world(file.scene, &file.origins, false)?;
     for remark in &load::remarks(&world, &file.origins) {
         messages.diagnostic(remark);
     }

@@ -43,7 +43,8 @@ pub struct Inspected<'a> {
 /// Estimates the pixel again, and tells what happened.
 pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
     let mut messages = Messages::new(args.run.quiet);
-    let mut file = load::load(&args.scene, &args.run.reading)?;
+    let visible = !args.run.quiet && !args.json && std::io::stderr().is_terminal();
+    let mut file = load::load(&args.scene, &args.run.reading, visible)?;
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
@@ -86,10 +87,9 @@ pub fn run(args: &InspectArgs) -> Result<Exit, Failure> {
             "there is no sample {n}: the pixel has {samples}, counted from 0"
         )));
     }
-    let visible = !args.run.quiet && !args.json && std::io::stderr().is_terminal();
     let watch = Watch::new(visible, None, progress::listen()?);
     render::pool(args.run.threads)?.install(|| {
-        let world = load::world(file.scene, &file.origins)?;
+        let world = load::world(file.scene, &file.origins, visible)?;
         let mut inspector = Inspector::new(&world, settings.clone(), (window.x + x, window.y + y), &watch);
         while inspector.samples() < samples && plan.passes.is_none_or(|n| inspector.iterations() < n) {
             if !inspector.step(&watch) {

@@ -17,6 +17,7 @@ use crate::args::SceneArgs;
 use crate::builtin::{self, BuiltinFiles, BuiltinScene};
 use crate::exit::Failure;
 use crate::identity::{Identity, RecordingFiles, fingerprint};
+use crate::loading::{Loading, ToldFiles};
 use crate::scenes;
 
 /// What the pictures of a scene are called: the name of its file without the suffix.
@@ -37,13 +38,18 @@ pub fn is_file(scene: &Path) -> bool {
     builtin_of(scene).is_none() && scene.is_file()
 }
 
-/// Reads the file of that name, or the built-in scene where there is no such file.
-pub fn load(scene: &Path, args: &SceneArgs) -> Result<SceneFile, Failure> {
-    load_recorded(scene, args).map(|(file, _)| file)
+/// Reads the file of that name, or the built-in scene where there is no such file. What is being read is shown if it is
+/// `visible`.
+pub fn load(scene: &Path, args: &SceneArgs, visible: bool) -> Result<SceneFile, Failure> {
+    load_recorded(scene, args, visible).map(|(file, _)| file)
 }
 
 /// Reads it, and tells the fingerprints of its text and of every file it reads.
-pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Identity), Failure> {
+pub fn load_recorded(
+    scene: &Path,
+    args: &SceneArgs,
+    visible: bool,
+) -> Result<(SceneFile, Identity), Failure> {
     let options = Options { defines: args.defines.clone(), lenient: args.lenient };
     let builtin = builtin_of(scene);
     let sandbox = match &args.sandbox {
@@ -59,6 +65,9 @@ pub fn load_recorded(scene: &Path, args: &SceneArgs) -> Result<(SceneFile, Ident
         Some(sandbox) => sandbox,
         None => &DiskFiles,
     };
+    let loading = Loading::new(visible);
+    let told = ToldFiles::new(disk, &loading);
+    let disk: &dyn Files = &told;
     if let Some(builtin) = builtin {
         let files = BuiltinFiles { scene: builtin, disk };
         let files = RecordingFiles::new(&files);
@@ -113,8 +122,9 @@ fn check_readable(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Prepares a scene for rendering; its problems are told at their places in the file.
-pub fn world(scene: Scene, origins: &Origins) -> Result<World, Failure> {
+/// Prepares a scene for rendering, and shows how far it is if that is `visible`; its problems are told at their places in
+/// the file.
+pub fn world(scene: Scene, origins: &Origins, visible: bool) -> Result<World, Failure> {
     // Meshes have no places of their own, but those of their shapes.
     let mesh_of_shape: Vec<Option<usize>> = scene
         .shapes
@@ -125,7 +135,7 @@ pub fn world(scene: Scene, origins: &Origins) -> Result<World, Failure> {
             _ => None,
         })
         .collect();
-    World::new(scene).map_err(|errors| {
+    World::observed(scene, &Loading::new(visible)).map_err(|errors| {
         let diagnostic = |error: &SceneError| match origin(error.subject, origins, &mesh_of_shape) {
             Some(at) => Diagnostic::error(at, error.message.clone()),
             None => Diagnostic::error(&origins.scene, error.to_string()),

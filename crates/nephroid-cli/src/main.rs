@@ -20,6 +20,7 @@ mod job;
 mod lab_args;
 mod layers;
 mod load;
+mod loading;
 mod media_flags;
 mod merge;
 mod method;

@@ -35,7 +35,8 @@ enum Kind {
 pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
     let mut messages = Messages::new(args.run.quiet);
     let outputs = outputs(args)?;
-    let mut file = load::load(&args.scene, &args.run.reading)?;
+    let visible = !args.run.quiet && std::io::stderr().is_terminal();
+    let mut file = load::load(&args.scene, &args.run.reading, visible)?;
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
@@ -51,10 +52,9 @@ pub fn run(args: &PhotonsArgs) -> Result<Exit, Failure> {
     }
     render::resize(&mut file, args.run.resolution, &mut messages)?;
     let plan = Plan::new(&LimitArgs::default(), file.sample_count);
-    let visible = !args.run.quiet && std::io::stderr().is_terminal();
     let watch = Watch::new(visible, None, progress::listen()?);
     let (written, legend) = render::pool(args.run.threads)?.install(|| {
-        let world = load::world(file.scene, &file.origins)?;
+        let world = load::world(file.scene, &file.origins, visible)?;
         let samples_per_pixel = plan.samples_per_pass;
         let settings = RenderSettings { method, samples_per_pixel, seed: args.run.seed };
         let recorded = record_photons(&world, &settings, args.iteration, &watch);

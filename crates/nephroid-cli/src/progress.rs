@@ -13,6 +13,8 @@ use crate::exit::{Exit, Failure};
 /// How long the phases of a render took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PhaseTimes {
+    /// Trees for rays.
+    pub trees: Duration,
     /// Trial paths.
     pub pilot: Duration,
     /// Photon paths.
@@ -26,6 +28,7 @@ pub struct PhaseTimes {
 impl PhaseTimes {
     fn of(&mut self, phase: Phase) -> &mut Duration {
         match phase {
+            Phase::Trees => &mut self.trees,
             Phase::Pilot => &mut self.pilot,
             Phase::Photons => &mut self.photons,
             Phase::Maps => &mut self.maps,
@@ -155,7 +158,7 @@ impl Now {
 
 impl Observer for Watch {
     fn begin(&self, phase: Phase, work: u64) {
-        if phase != Phase::Pilot {
+        if !matches!(phase, Phase::Trees | Phase::Pilot) {
             self.planned.get_or_init(Instant::now);
         }
         self.may_stop.fetch_or(phase == Phase::Camera, Ordering::Relaxed);
@@ -190,6 +193,7 @@ impl Observer for Watch {
 impl Watch {
     fn style(&self, phase: Phase) -> ProgressStyle {
         let name = match phase {
+            Phase::Trees => "trees",
             Phase::Pilot => "pilot",
             Phase::Photons => "photons",
             Phase::Maps => "maps",

@@ -107,7 +107,8 @@ fn prepare(
     resumed: Option<(Begun, &LimitArgs)>,
     messages: &mut Messages,
 ) -> Result<(SceneFile, Task), Failure> {
-    let (mut file, files) = load::load_recorded(scene, &args.reading)?;
+    let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
+    let (mut file, files) = load::load_recorded(scene, &args.reading, visible)?;
     for warning in &file.warnings {
         messages.diagnostic(warning);
     }
@@ -165,7 +166,6 @@ fn prepare(
     if let (Some(path), None) = (checkpoint, &begun) {
         films::refuse_to_replace(path, &identity)?;
     }
-    let visible = !args.quiet && !args.json && std::io::stderr().is_terminal();
     let (clamp, flags) = (args.clamp, args.photons.names());
     let wants_error = args.aovs.contains(&LayerFlag::Error);
     Ok((file, Task { settings, flags, plan, clamp, layers, wants_error, identity, order, begun, visible }))

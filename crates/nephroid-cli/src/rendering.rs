@@ -164,7 +164,7 @@ pub struct Companions<'a> {
 pub fn render(file: SceneFile, task: Task, companions: Companions<'_>) -> Result<Rendered, Failure> {
     let clock = Instant::now();
     let SceneFile { scene, origins, .. } = file;
-    let world = load::world(scene, &origins)?;
+    let world = load::world(scene, &origins, task.visible)?;
     let preparing = clock.elapsed();
     let Task { settings, flags, plan, clamp, layers, wants_error, identity, order, begun, visible } = task;
     let spent = begun.as_ref().map_or(0.0, |begun| begun.job.spent);

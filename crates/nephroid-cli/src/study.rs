@@ -86,7 +86,7 @@ impl Command for CommandLine {
         let scene = args.scene.as_deref().ok_or("it names no scene")?;
         // Nobody is asked, and what a scene warns of is no news here.
         let mut messages = Messages::new(true);
-        let mut file = load::load(scene, &args.reading).map_err(text)?;
+        let mut file = load::load(scene, &args.reading, false).map_err(text)?;
         let method = method::choose(args.integrator, &file, &args.photons, Integrator::Auto, &mut messages)
             .map_err(text)?;
         render::resize(&mut file, args.resolution, &mut messages).map_err(text)?;

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A part of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
+    /// Building the trees that rays go through; work is counted in primitives, each twice.
+    Trees,
     /// Trial photon paths that plan the render.
     Pilot,
     /// Photon paths; work is counted in paths.
@@ -47,6 +49,11 @@ impl<'a> Work<'a> {
     pub fn begin(observer: &'a dyn Observer, phase: Phase, work: u64) -> Self {
         observer.begin(phase, work);
         Self { observer, phase, done: AtomicU64::new(0) }
+    }
+
+    /// Work that nobody follows.
+    pub fn silent() -> Self {
+        Self { observer: &Silent, phase: Phase::Trees, done: AtomicU64::new(0) }
     }
 
     pub fn advance(&self, more: u64) {

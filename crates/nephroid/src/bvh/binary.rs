@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::Boxes;
 use super::part::part;
 use crate::math::Bounds;
+use crate::observer::Work;
 
 /// A binary tree with one item to a leaf.
 pub(super) struct Binary {
@@ -46,37 +47,47 @@ const ROUNDS: [f32; 6] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0, 1.0 / 17.0, 1.0 
 
 impl Binary {
     /// By locally ordered clustering, then reinsertion, as `obvhs` does them on one thread. There must
-    /// be at least one box, and none may be empty. Many boxes are parted first, and the parts clustered on all threads:
-    /// what is needed for it is as much memory as a part has for each thread.
-    pub fn clustered(boxes: &(impl Boxes + ?Sized)) -> Self {
+    /// be at least one box, and none may be empty. Many boxes are parted first, and the parts clustered on all threads,
+    /// each into its place: what is needed besides is as much memory as a part takes, for each thread.
+    pub fn clustered(work: &Work<'_>, boxes: &(impl Boxes + ?Sized)) -> Self {
         let scale = unit_scale(boxes);
         let mut items: Vec<u32> = (0..boxes.count()).collect();
+        let mut nodes = vec![BinaryNode { area: 0.0, link: 0 }; 2 * items.len() - 1];
         if items.len() <= TOGETHER {
-            return Self { nodes: clustered(boxes, scale, &items) };
+            cluster(boxes, scale, &items, 0, &mut nodes);
+            work.advance(items.len() as u64);
+            return Self { nodes };
         }
         let whole = part(boxes, scale, &mut items, PART);
-        let parts: Vec<Vec<BinaryNode>> =
-            whole.parts.par_iter().map(|own| clustered(boxes, scale, &items[own.clone()])).collect();
-        drop(items);
-        let mut nodes = Vec::with_capacity(parts.iter().map(Vec::len).sum::<usize>() + parts.len());
-        let mut parts = parts.into_iter();
+        let mut parts = whole.parts.into_iter();
+        let mut places = Vec::new();
+        let (mut rest, mut next) = (&mut nodes[..], 0);
         // Inner nodes whose right child is to come.
-        let mut waiting = Vec::new();
+        let mut waiting: Vec<&mut BinaryNode> = Vec::new();
         for area in whole.areas {
-            match area {
-                Some(area) => {
-                    waiting.push(nodes.len());
-                    nodes.push(BinaryNode { area, link: 0 });
+            let own = if area.is_some() { None } else { parts.next() };
+            let count = own.as_ref().map_or(1, |own| 2 * own.len() - 1);
+            let (place, after) = rest.split_at_mut(count);
+            rest = after;
+            match (area, own) {
+                (Some(area), _) => {
+                    place[0].area = area;
+                    waiting.extend(place);
                 }
-                None => {
-                    let first = nodes.len() as u32;
-                    nodes.extend(parts.next().into_iter().flatten().map(|node| node.moved(first)));
+                (None, own) => {
+                    places.push((own.unwrap_or_default(), next, place));
                     if let Some(parent) = waiting.pop() {
-                        nodes[parent].link = nodes.len() as u32;
+                        parent.link = (next + count) as u32;
                     }
                 }
             }
+            next += count;
         }
+        places.into_par_iter().for_each(|(own, first, place)| {
+            let count = own.len() as u64;
+            cluster(boxes, scale, &items[own], first as u32, place);
+            work.advance(count);
+        });
         Self { nodes }
     }
 
@@ -100,8 +111,8 @@ impl Binary {
     }
 }
 
-/// A tree over some of the boxes, laid out as [`Binary::nodes`].
-fn clustered(boxes: &(impl Boxes + ?Sized), scale: f32, items: &[u32]) -> Vec<BinaryNode> {
+/// Lays out a tree over some of the boxes as [`Binary::nodes`], from the number `first` on.
+fn cluster(boxes: &(impl Boxes + ?Sized), scale: f32, items: &[u32], first: u32, nodes: &mut [BinaryNode]) {
     let aabb = |b: Bounds| Aabb::new((b.min * scale).into(), (b.max * scale).into());
     let scaled: Vec<Aabb> = items.iter().map(|&i| aabb(boxes.get(i))).collect();
     let indices = (0..items.len() as u32).collect();
@@ -109,35 +120,29 @@ fn clustered(boxes: &(impl Boxes + ?Sized), scale: f32, items: &[u32]) -> Vec<Bi
     drop(scaled);
     ReinsertionOptimizer::default().run(&mut tree, REINSERTION, Some(ROUNDS.to_vec()));
 
-    let mut nodes: Vec<BinaryNode> = Vec::with_capacity(tree.nodes.len());
     let mut next = Some(0u32);
     // Nodes whose right child is to come, with its place in `tree`.
-    let mut waiting: Vec<(u32, u32)> = Vec::new();
-    while let Some(old) = next {
+    let mut waiting: Vec<(usize, u32)> = Vec::new();
+    for at in 0..nodes.len() {
+        let Some(old) = next else { break };
         let node = &tree.nodes[old as usize];
         let area = 2.0 * node.aabb().half_area();
         if node.is_leaf() {
             let own = tree.primitive_indices[node.first_index as usize];
-            nodes.push(BinaryNode::item(area, items[own as usize]));
+            nodes[at] = BinaryNode::item(area, items[own as usize]);
             next = waiting.pop().map(|(parent, right)| {
-                nodes[parent as usize].link = nodes.len() as u32;
+                nodes[parent].link = first + at as u32 + 1;
                 right
             });
         } else {
-            waiting.push((nodes.len() as u32, node.first_index + 1));
-            nodes.push(BinaryNode { area, link: 0 });
+            waiting.push((at, node.first_index + 1));
+            nodes[at] = BinaryNode { area, link: 0 };
             next = Some(node.first_index);
         }
     }
-    nodes
 }
 
 impl BinaryNode {
-    /// As one of nodes that follow so many others.
-    fn moved(self, by: u32) -> Self {
-        Self { link: if self.link & LEAF != 0 { self.link } else { self.link + by }, ..self }
-    }
-
     fn item(area: f32, item: u32) -> Self {
         Self { area, link: item | LEAF }
     }

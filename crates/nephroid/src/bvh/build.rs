@@ -1,7 +1,10 @@
+use std::mem;
+
 use super::binary::{Binary, Content};
 use super::stack::DEPTH;
 use super::{Boxes, Child, Kind, LANES, Node, Tree};
 use crate::math::Bounds;
+use crate::observer::Work;
 
 /// Expected cost of a node that is entered, and of a leaf, in the same unit. They are about alike: eight
 /// boxes or eight triangles.
@@ -12,27 +15,43 @@ const LEAF_COST: f32 = 1.2;
 /// Without, such rays take a fifth longer.
 const LEAF_GAIN: f32 = 3.0;
 
+/// Of as many items it is told at once that they are in their place.
+const TOLD_TOGETHER: u64 = 1 << 14;
+
 /// One item in a leaf of its own kind.
 const OTHER_COST: f32 = 2.0;
 
 impl Tree {
-    /// Builds over boxes, none of which may be empty. `leaf` is told what to keep together and returns a
-    /// number of its own for it, below 2³⁰. The same boxes give the same tree.
+    /// Builds over boxes, at most 2²⁸ and none empty. `leaf` is told what to keep together and returns a
+    /// number of its own for it, below 2³¹ for triangles and 2²⁹ for others. The same boxes give the same tree.
+    /// Each box is counted twice as work.
     pub fn build(
+        work: &Work<'_>,
         boxes: &(impl Boxes + ?Sized),
-        kind: impl Fn(u32) -> Kind,
+        kind: impl Fn(u32) -> Kind + Sync,
         mut leaf: impl FnMut(Kind, &[u32]) -> u32,
     ) -> Self {
         if boxes.count() == 0 {
             return Self { nodes: Vec::new(), root: Child::NONE };
         }
-        let mut plan = Plan::new(Binary::clustered(boxes), &kind);
-        if plan.stack_needed(0, 0) > DEPTH {
+        let mut plan = Plan::new(Binary::clustered(work, boxes), &kind);
+        let mut needed = plan.needed(0, 0);
+        if needed.stack > DEPTH {
             plan = Plan::new(Binary::halved(boxes), &kind);
+            needed = plan.needed(0, 0);
         }
-        let mut tree = Self { nodes: Vec::with_capacity(boxes.count() as usize / 7), root: Child::NONE };
-        tree.root = tree.lay_out(&plan, 0, boxes, &mut leaf).0;
-        tree.nodes.shrink_to_fit();
+        // Nodes are aligned, and what is aligned is copied when it grows or shrinks.
+        let mut tree = Self { nodes: Vec::with_capacity(needed.nodes), root: Child::NONE };
+        let mut untold = 0;
+        let mut told = |kind, items: &[u32]| {
+            untold += items.len() as u64;
+            if untold >= TOLD_TOGETHER {
+                work.advance(mem::take(&mut untold));
+            }
+            leaf(kind, items)
+        };
+        tree.root = tree.lay_out(&plan, 0, boxes, &mut told).0;
+        work.advance(untold);
         tree
     }
 
@@ -110,14 +129,41 @@ struct Plan {
     choices: Vec<Choice>,
 }
 
-/// What becomes of a binary node.
+/// What becomes of a binary node. Packed, as there are two for each item: in the lowest bits what leaf it is where it has
+/// one slot, one more than its [`Kind`], or zero for a node; above, three bits each, how many of `n` slots the left child
+/// gets, from `n` = 2 on, and zero where fewer slots are as good. The last is how a node of its own is shared out.
 #[derive(Clone, Copy)]
-struct Choice {
-    /// What leaf it is where it has one slot; `None` for a node.
-    leaf: Option<Kind>,
-    /// How many of `n` slots the left child gets, at `n - 2`; zero where fewer slots are as good. The last
-    /// is how a node of its own is shared out.
-    left: [u8; LANES - 1],
+struct Choice(u32);
+
+impl Choice {
+    const NONE: Self = Self(0);
+
+    fn leaf(self) -> Option<Kind> {
+        match self.0 & 3 {
+            0 => None,
+            1 => Some(Kind::Triangles),
+            2 => Some(Kind::Flats),
+            _ => Some(Kind::Other),
+        }
+    }
+
+    fn left(self, slots: usize) -> usize {
+        (self.0 >> Self::place(slots) & 7) as usize
+    }
+
+    /// To be said once.
+    fn set_leaf(&mut self, kind: Option<Kind>) {
+        self.0 |= kind.map_or(0, |kind| 1 + kind as u32);
+    }
+
+    /// To be said once for each number of slots.
+    fn set_left(&mut self, slots: usize, count: u8) {
+        self.0 |= u32::from(count) << Self::place(slots);
+    }
+
+    fn place(slots: usize) -> usize {
+        2 + 3 * (slots - 2)
+    }
 }
 
 /// What is below a binary node.
@@ -132,42 +178,24 @@ struct Below {
 }
 
 impl Plan {
-    fn new(binary: Binary, kind: &impl Fn(u32) -> Kind) -> Self {
-        let n = binary.nodes.len();
-        let mut choices = vec![Choice { leaf: None, left: [0; LANES - 1] }; n];
-        // What has no parent yet: a node's children come after it, the left one first.
-        let mut below: Vec<Below> = Vec::new();
-        for at in (0..n as u32).rev() {
-            let area = binary.area(at);
-            let choice = &mut choices[at as usize];
-            let made = match binary.content(at) {
-                Content::Item(item) => {
-                    let kind = kind(item);
-                    choice.leaf = Some(kind);
-                    Below { count: 1, kind: Some(kind), costs: [leaf_cost(kind) * area; LANES - 1] }
-                }
-                Content::Inner(_) => match (below.pop(), below.pop()) {
-                    (Some(left), Some(right)) => choice.make(area, &left, &right),
-                    _ => unreachable!("both children were before"),
-                },
-            };
-            below.push(made);
-        }
+    fn new(binary: Binary, kind: &(impl Fn(u32) -> Kind + Sync)) -> Self {
+        let mut choices = vec![Choice::NONE; binary.nodes.len()];
+        choose(&binary, 0, &mut choices, kind);
         Self { binary, choices }
     }
 
     fn leaf_kind(&self, at: u32) -> Option<Kind> {
-        self.choices[at as usize].leaf
+        self.choices[at as usize].leaf()
     }
 
     /// The children of a wide node at `at`.
     fn children(&self, at: u32, slots: usize, out: &mut List) {
-        let left_of = &self.choices[at as usize].left;
+        let choice = self.choices[at as usize];
         let own = slots == LANES;
-        let slots = if own { LANES } else { (2..=slots).rev().find(|&s| left_of[s - 2] > 0).unwrap_or(1) };
+        let slots = if own { LANES } else { (2..=slots).rev().find(|&s| choice.left(s) > 0).unwrap_or(1) };
         match self.binary.content(at) {
             Content::Inner([left, right]) if slots > 1 => {
-                let split = usize::from(left_of[slots - 2]);
+                let split = choice.left(slots);
                 self.children(left, split.min(7), out);
                 self.children(right, (slots - split).min(7), out);
             }
@@ -183,17 +211,63 @@ impl Plan {
         }
     }
 
-    /// Entries that a traversal's stack must hold below `at` where it holds some already; not to the end
-    /// where they are too many.
-    fn stack_needed(&self, at: u32, held: usize) -> usize {
+    /// What the tree below `at` needs where a traversal's stack holds some entries already. It does not go on where those
+    /// are too many.
+    fn needed(&self, at: u32, held: usize) -> Needed {
+        let mut all = Needed { stack: held, nodes: 0 };
         if held > DEPTH || self.leaf_kind(at).is_some() {
-            return held;
+            return all;
         }
         let mut children = List::default();
         self.children(at, LANES, &mut children);
-        let held = held + children.len - 1;
-        children.as_slice().iter().map(|&c| self.stack_needed(c, held)).max().unwrap_or(held)
+        all.nodes = 1;
+        for &child in children.as_slice() {
+            let own = self.needed(child, held + children.len - 1);
+            all = Needed { stack: all.stack.max(own.stack), nodes: all.nodes + own.nodes };
+        }
+        all
     }
+}
+
+/// What a tree will need.
+struct Needed {
+    /// Entries of a traversal's stack.
+    stack: usize,
+    nodes: usize,
+}
+
+/// As many nodes are chosen for on one thread.
+const ALONE: usize = 1 << 14;
+
+/// Chooses for the node at `at` and all below it, of which there are as many as there is room for.
+fn choose(binary: &Binary, at: u32, choices: &mut [Choice], kind: &(impl Fn(u32) -> Kind + Sync)) -> Below {
+    if let ([own, below @ ..], Content::Inner([left, right])) = (&mut *choices, binary.content(at))
+        && below.len() >= ALONE
+    {
+        let (of_left, of_right) = below.split_at_mut((right - left) as usize);
+        let (of_left, of_right) =
+            rayon::join(|| choose(binary, left, of_left, kind), || choose(binary, right, of_right, kind));
+        return own.make(binary.area(at), &of_left, &of_right);
+    }
+    // What has no parent yet: a node's children come after it, the left one first.
+    let mut below: Vec<Below> = Vec::new();
+    for (place, choice) in choices.iter_mut().enumerate().rev() {
+        let at = at + place as u32;
+        let area = binary.area(at);
+        let made = match binary.content(at) {
+            Content::Item(item) => {
+                let kind = kind(item);
+                choice.set_leaf(Some(kind));
+                Below { count: 1, kind: Some(kind), costs: [leaf_cost(kind) * area; LANES - 1] }
+            }
+            Content::Inner(_) => match (below.pop(), below.pop()) {
+                (Some(left), Some(right)) => choice.make(area, &left, &right),
+                _ => unreachable!("both children were before"),
+            },
+        };
+        below.push(made);
+    }
+    below.pop().unwrap_or(Below { count: 0, kind: None, costs: [0.0; LANES - 1] })
 }
 
 impl Choice {
@@ -215,7 +289,7 @@ impl Choice {
             best
         };
         let (within, split) = shared(LANES);
-        self.left[LANES - 2] = split;
+        self.set_left(LANES, split);
         let as_node = within + NODE_COST * area;
         let as_leaf = match kind {
             Some(kind @ (Kind::Triangles | Kind::Flats)) if usize::from(count) <= LANES => {
@@ -223,7 +297,7 @@ impl Choice {
             }
             _ => f32::INFINITY,
         };
-        self.leaf = kind.filter(|_| as_leaf <= as_node);
+        self.set_leaf(kind.filter(|_| as_leaf <= as_node));
         let mut costs = [as_leaf.min(as_node); LANES - 1];
         for slots in 2..LANES {
             costs[slots - 1] = costs[slots - 2];
@@ -233,7 +307,7 @@ impl Choice {
             let (best, split) = shared(slots);
             if best < costs[slots - 1] {
                 costs[slots - 1] = best;
-                self.left[slots - 2] = split;
+                self.set_left(slots, split);
             }
         }
         Below { count, kind, costs }

@@ -49,11 +49,14 @@ pub(crate) enum Kind {
     Other,
 }
 
-/// A node, or a leaf: its kind in the two highest bits, its number in the rest.
+/// A node, or a leaf. The highest bit tells a leaf of triangles, whose number has the 31 others; then two bits what else it
+/// is, where a node has one bit more for its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Child(u32);
 
-const NUMBER_BITS: u32 = 30;
+const TRIANGLES: u32 = 1 << 31;
+const NODE_BITS: u32 = 30;
+const LEAF_BITS: u32 = 29;
 
 impl Child {
     /// Nothing at all, as a root.
@@ -64,18 +67,22 @@ impl Child {
     }
 
     fn leaf(kind: Kind, number: u32) -> Self {
-        Self((1 + kind as u32) << NUMBER_BITS | number)
+        Self(match kind {
+            Kind::Triangles => TRIANGLES | number,
+            Kind::Flats => 2 << LEAF_BITS | number,
+            Kind::Other => 3 << LEAF_BITS | number,
+        })
     }
 
     #[inline(always)]
     fn unpack(self) -> (Option<Kind>, usize) {
-        let kind = match self.0 >> NUMBER_BITS {
-            0 => None,
-            1 => Some(Kind::Triangles),
-            2 => Some(Kind::Flats),
-            _ => Some(Kind::Other),
+        let (kind, bits) = match self.0 >> LEAF_BITS {
+            0 | 1 => (None, NODE_BITS),
+            2 => (Some(Kind::Flats), LEAF_BITS),
+            3 => (Some(Kind::Other), LEAF_BITS),
+            _ => (Some(Kind::Triangles), 31),
         };
-        (kind, (self.0 & ((1 << NUMBER_BITS) - 1)) as usize)
+        (kind, (self.0 & ((1 << bits) - 1)) as usize)
     }
 }
 

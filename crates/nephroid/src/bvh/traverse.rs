@@ -150,6 +150,7 @@ mod tests {
     use super::super::{Boxes, Simd, Work};
     use super::*;
     use crate::math::{Bounds, warp};
+    use crate::observer;
     use crate::sampling::{Key, Sampler, Sequence, Stream};
 
     fn sampler(i: u64) -> Sampler {
@@ -211,6 +212,7 @@ mod tests {
     fn check(boxes: &[Bounds], kind: Kind) {
         let mut leaves: Vec<Vec<u32>> = Vec::new();
         let tree = Tree::build(
+            &observer::Work::silent(),
             boxes,
             |_| kind,
             |_, items| {

@@ -14,7 +14,7 @@ pub use mesh::Mesh;
 pub(crate) use primitive::Primitive;
 pub(crate) use sphere::Sphere;
 pub(crate) use triangle::{ShearedRay, Triangle};
-pub(crate) use triangles::{Hits, ShearedLanes, TriangleBlock};
+pub(crate) use triangles::{Hits, ShearedLanes, TriangleLeaf, Triangles};
 
 use crate::handle::Handle;
 use crate::material::Material;

@@ -1,6 +1,6 @@
 use super::asking::Asked;
 use super::hues::Hues;
-use super::level::{Item, Items, Level, Other};
+use super::level::{Item, Items, Level, Other, PackedItem};
 use super::nest::ranks;
 use super::placed::Placed;
 use super::scenery::Scenery;
@@ -16,9 +16,10 @@ use crate::light::{
 use crate::material::Material;
 use crate::math::{Bounds, Transform, warp};
 use crate::medium::{Matter, Media};
+use crate::observer::{Observer, Phase, Silent, Work};
 use crate::sampling::Discrete;
 use crate::scene::{self, Scene, SceneError, SceneErrors, Subject};
-use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle};
+use crate::shape::{Geometry, Mesh, Primitive, Shape, Triangle, TriangleLeaf};
 use crate::texture::Pixmap;
 
 impl World {
@@ -26,13 +27,21 @@ impl World {
     ///
     /// # Errors
     /// Every problem that the scene has. After this, rendering cannot fail.
-    pub fn new(mut scene: Scene) -> Result<Self, SceneErrors> {
+    pub fn new(scene: Scene) -> Result<Self, SceneErrors> {
+        Self::observed(scene, &Silent)
+    }
+
+    /// The same, and tells how far the trees are: a scene of millions of triangles takes seconds.
+    ///
+    /// # Errors
+    /// Every problem that the scene has.
+    pub fn observed(mut scene: Scene, observer: &dyn Observer) -> Result<Self, SceneErrors> {
         let problems = scene::check(&scene);
         if !problems.is_empty() {
             return Err(SceneErrors(problems));
         }
         settle(&mut scene);
-        let (scenery, pieces_of_lamps) = scenery(&scene)?;
+        let (scenery, pieces_of_lamps) = scenery(&scene, observer)?;
         let bounds = scenery.bounds();
 
         let camera = CameraRays::new(&scene.camera, &scene.film);
@@ -108,7 +117,7 @@ impl World {
 }
 
 /// All surfaces, and the pieces of each shape that emits.
-fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors> {
+fn scenery(scene: &Scene, observer: &dyn Observer) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors> {
     let mut parts = Parts::default();
     let top = parts.level(scene, &scene.shapes, 0);
     let mut first = scene.shapes.len();
@@ -117,7 +126,11 @@ fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors>
         groups.push(parts.level(scene, &group.shapes, first));
         first += group.shapes.len();
     }
-    let levels: Vec<Level> = groups.into_iter().map(|pieces| parts.build(scene, pieces, &[])).collect();
+    let in_groups: usize = groups.iter().map(|pieces| pieces.finite.len()).sum();
+    let all = top.finite.len() + in_groups + scene.instances.len();
+    let work = Work::begin(observer, Phase::Trees, 2 * all as u64);
+    let levels: Vec<Level> =
+        groups.into_iter().map(|pieces| parts.build(&work, scene, pieces, &[])).collect();
 
     let (mut top, mut instances, mut bounds_of) = (top, Vec::new(), Vec::new());
     for (number, instance) in scene.instances.iter().enumerate() {
@@ -125,7 +138,7 @@ fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors>
         let placed = Placed::new(group as u32, &instance.to_world);
         let bounds = placed.bounds(levels[group].bounds);
         if is_sound(&bounds) {
-            top.finite.push(Item::Other(Other::Instance(number as u32)));
+            top.finite.push(Item::Other(Other::Instance(number as u32)).into());
         } else {
             parts.problems.push(nothing_left(Subject::Instance(number)));
         }
@@ -135,7 +148,7 @@ fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors>
     if !parts.problems.is_empty() {
         return Err(SceneErrors(parts.problems));
     }
-    let top = parts.build(scene, top, &bounds_of);
+    let top = parts.build(&work, scene, top, &bounds_of);
     let Parts { mesh_of, primitives, owner, lamps, count, .. } = parts;
     let (simd, meshes) = (Simd::detect(), scene.meshes.clone());
     let scenery = Scenery { meshes, mesh_of, primitives, owner, top, groups: levels, instances, count, simd };
@@ -144,7 +157,7 @@ fn scenery(scene: &Scene) -> Result<(Scenery, Vec<Vec<Primitive>>), SceneErrors>
 
 /// What a level will be built of.
 struct Pieces {
-    finite: Vec<Item>,
+    finite: Vec<PackedItem>,
     infinite: Vec<u32>,
 }
 
@@ -174,6 +187,10 @@ impl Parts {
             if !sound || added == 0 {
                 self.problems.push(nothing_left(Subject::Shape(number)));
             }
+            if pieces.finite.len() > TriangleLeaf::MOST && pieces.finite.len() - added <= TriangleLeaf::MOST {
+                let message = format!("here triangles become more than {} together", TriangleLeaf::MOST);
+                self.problems.push(SceneError { subject: Subject::Shape(number), message });
+            }
         }
         pieces
     }
@@ -200,7 +217,7 @@ impl Parts {
             }
             let bounds = triangle.bounds();
             sound &= is_sound(&bounds);
-            pieces.finite.push(Item::Triangle { shape: number as u32, index });
+            pieces.finite.push(Item::Triangle { shape: number as u32, index }.into());
             if shape.emission.is_some() {
                 lamp.push(Primitive::Triangle(triangle));
             }
@@ -221,7 +238,7 @@ impl Parts {
             if bounds.is_empty() {
                 pieces.infinite.push(at);
             } else if is_sound(&bounds) {
-                pieces.finite.push(Item::Other(Other::Primitive(at)));
+                pieces.finite.push(Item::Other(Other::Primitive(at)).into());
             } else {
                 return false;
             }
@@ -231,10 +248,10 @@ impl Parts {
     }
 
     /// Builds a level, where the instances have these bounds.
-    fn build(&self, scene: &Scene, pieces: Pieces, instances: &[Bounds]) -> Level {
+    fn build(&self, work: &Work<'_>, scene: &Scene, pieces: Pieces, instances: &[Bounds]) -> Level {
         let (meshes, mesh_of, primitives) = (scene.meshes.as_slice(), &self.mesh_of, &self.primitives);
         let items = Items { list: &pieces.finite, meshes, mesh_of, primitives, instances };
-        Level::new(&items, pieces.infinite)
+        Level::new(work, &items, pieces.infinite)
     }
 }
 

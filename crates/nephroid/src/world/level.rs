@@ -1,12 +1,15 @@
 use crate::bvh::{Boxes, Kind, Lanes, Tree, Visitor};
 use crate::math::{Bounds, Ray};
-use crate::shape::{FlatBlock, Hits, Intersection, Mesh, Primitive, ShearedLanes, ShearedRay, TriangleBlock};
+use crate::observer::Work;
+use crate::shape::{
+    FlatBlock, Hits, Intersection, Mesh, Primitive, ShearedLanes, ShearedRay, TriangleLeaf, Triangles,
+};
 
 /// A tree and what is in its leaves: the scene without its groups, or a group.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
     tree: Tree,
-    triangles: Vec<TriangleBlock>,
+    triangles: Triangles,
     flats: Vec<FlatBlock>,
     others: Vec<Other>,
     /// Primitives without bounds, beside the tree.
@@ -32,6 +35,35 @@ pub(super) enum Item {
     Other(Other),
 }
 
+/// An [`Item`] in eight bytes, of which there are many while a tree is built: the shape and the number, or in place of the
+/// shape what else it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PackedItem([u32; 2]);
+
+impl PackedItem {
+    const PRIMITIVE: u32 = u32::MAX;
+    const INSTANCE: u32 = u32::MAX - 1;
+
+    #[inline]
+    fn unpacked(self) -> Item {
+        match self.0 {
+            [Self::PRIMITIVE, number] => Item::Other(Other::Primitive(number)),
+            [Self::INSTANCE, number] => Item::Other(Other::Instance(number)),
+            [shape, index] => Item::Triangle { shape, index },
+        }
+    }
+}
+
+impl From<Item> for PackedItem {
+    fn from(item: Item) -> Self {
+        Self(match item {
+            Item::Triangle { shape, index } => [shape, index],
+            Item::Other(Other::Primitive(number)) => [Self::PRIMITIVE, number],
+            Item::Other(Other::Instance(number)) => [Self::INSTANCE, number],
+        })
+    }
+}
+
 /// The candidate for a hit that a level offers: of which shape or primitive, and where.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
@@ -43,7 +75,7 @@ pub(super) struct Candidate {
 
 /// Items, whose boxes are reckoned when they are asked for: to keep them would take more than a mesh does.
 pub(super) struct Items<'a> {
-    pub list: &'a [Item],
+    pub list: &'a [PackedItem],
     pub meshes: &'a [Mesh],
     pub mesh_of: &'a [Option<u32>],
     pub primitives: &'a [Primitive],
@@ -66,7 +98,7 @@ impl Boxes for Items<'_> {
 
     #[inline]
     fn get(&self, number: u32) -> Bounds {
-        match self.list[number as usize] {
+        match self.list[number as usize].unpacked() {
             Item::Triangle { shape, index } => {
                 let mesh = self.mesh(shape);
                 Bounds::of(mesh.triangles[index as usize].map(|i| mesh.positions[i as usize]))
@@ -79,11 +111,11 @@ impl Boxes for Items<'_> {
 
 impl Level {
     /// Over items with bounds, and primitives without any.
-    pub fn new(items: &Items<'_>, infinite: Vec<u32>) -> Self {
-        let (mut triangles, mut flats, mut others) = (Vec::new(), Vec::new(), Vec::new());
-        // Most leaves hold more.
-        triangles.reserve(items.list.len() / 5);
-        let kind = |i: u32| match items.list[i as usize] {
+    pub fn new(work: &Work<'_>, items: &Items<'_>, infinite: Vec<u32>) -> Self {
+        let (mut flats, mut others) = (Vec::new(), Vec::new());
+        let count = items.list.iter().filter(|item| matches!(item.unpacked(), Item::Triangle { .. })).count();
+        let mut triangles = Triangles::default();
+        let kind = |i: u32| match items.list[i as usize].unpacked() {
             Item::Triangle { .. } => Kind::Triangles,
             Item::Other(Other::Primitive(p))
                 if matches!(items.primitives[p as usize], Primitive::Flat(_)) =>
@@ -92,15 +124,19 @@ impl Level {
             }
             Item::Other(_) => Kind::Other,
         };
-        let tree = Tree::build(items, kind, |kind, list| {
-            let members = list.iter().map(|&i| items.list[i as usize]);
+        let tree = Tree::build(work, items, kind, |kind, list| {
+            let members = list.iter().map(|&i| items.list[i as usize].unpacked());
             let number = match kind {
                 Kind::Triangles => {
-                    triangles.push(TriangleBlock::new(members.filter_map(|item| match item {
+                    // Not before: to part and cluster boxes takes memory that is free by now.
+                    if triangles.is_empty() {
+                        triangles = Triangles::with_capacity(count);
+                    }
+                    let leaf = triangles.add(members.filter_map(|item| match item {
                         Item::Triangle { shape, index } => Some((shape, items.mesh(shape), index)),
                         Item::Other(_) => None,
-                    })));
-                    triangles.len()
+                    }));
+                    return leaf.into();
                 }
                 Kind::Flats => {
                     flats.push(FlatBlock::new(members.filter_map(|item| match item {
@@ -122,7 +158,7 @@ impl Level {
             };
             number as u32 - 1
         });
-        triangles.shrink_to_fit();
+        triangles.finish();
         let bounds = (0..items.count()).fold(Bounds::EMPTY, |all, i| all.union(items.get(i)));
         Self { tree, triangles, flats, others, infinite, bounds }
     }
@@ -130,7 +166,7 @@ impl Level {
     /// Bytes of the tree and its leaves.
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
-            + size_of_val(&self.triangles[..])
+            + self.triangles.bytes()
             + size_of_val(&self.flats[..])
             + size_of_val(&self.others[..])
     }
@@ -173,11 +209,11 @@ impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
     fn visit(&mut self, kind: Kind, number: usize, t_max: &mut f32) -> bool {
         match kind {
             Kind::Triangles => {
-                let block = &self.level.triangles[number];
-                let hits = block.intersect::<L>(self.ray, &self.sheared, &self.lanes, *t_max);
-                take::<ANY>(hits, t_max, self.searcher, |i| Item::Triangle {
-                    shape: block.shape[i],
-                    index: block.index[i],
+                let (triangles, leaf) = (&self.level.triangles, TriangleLeaf::from(number));
+                let hits = triangles.intersect::<L>(leaf, self.ray, &self.sheared, &self.lanes, *t_max);
+                take::<ANY>(hits, t_max, self.searcher, |lane| {
+                    let [shape, index] = triangles.name(leaf, lane);
+                    Item::Triangle { shape, index }
                 })
             }
             Kind::Flats => {
@@ -196,10 +232,8 @@ impl<L: Lanes, S: Searcher, const ANY: bool> Visitor for Leaves<'_, L, S, ANY> {
 
     #[inline(always)]
     fn prefetch(&self, kind: Kind, number: usize) {
-        if kind == Kind::Triangles
-            && let Some(block) = self.level.triangles.get(number)
-        {
-            L::prefetch(block);
+        if kind == Kind::Triangles {
+            self.level.triangles.prefetch::<L>(TriangleLeaf::from(number));
         }
     }
 }

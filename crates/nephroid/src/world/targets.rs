@@ -1,5 +1,7 @@
 //! What photons are aimed at, and how the paths of a map are shared out among lights.
 
+use std::mem;
+
 use crate::light::{Ball, EmissionNumbers, Emitter, Lookup, MAX_BALLS, Targets};
 use crate::material::Material;
 use crate::math::{Bounds, Ray, Vec3, warp};
@@ -61,14 +63,14 @@ impl Aims {
         emitter_of_shape: &[Option<u32>],
         reach: f32,
     ) -> Self {
-        let solids = solids(scene, scenery, emitter_of_shape);
+        let mut solids = solids(scene, scenery, emitter_of_shape);
         let lookup = Lookup { meshes: scenery.meshes.as_slice(), textures: &scene.textures };
         let aim = |targets, selective| Aim::new(emitters, lookup, targets, selective);
         Self {
             dirac: has_dirac(scene),
             specular: solids.iter().any(|solid| solid.specular),
             global: targets_of_all(&solids).and_then(|targets| aim(targets, false)),
-            caustic: specular_targets(&solids).and_then(|targets| aim(targets, true)),
+            caustic: specular_targets(&mut solids).and_then(|targets| aim(targets, true)),
             planes: solids.into_iter().flat_map(|solid| solid.planes).collect(),
             reach,
         }
@@ -219,13 +221,17 @@ fn has_dirac(scene: &Scene) -> bool {
     scene.all_shapes().any(|shape| Material::has_dirac(&scene.materials, shape.material))
 }
 
-/// The balls around what is specular; `None` if some of it is infinite.
-fn specular_targets(solids: &[Solid]) -> Option<Targets> {
-    let specular = || solids.iter().filter(|solid| solid.specular);
-    if specular().any(|solid| !solid.planes.is_empty()) {
+/// The balls around what is specular, whose items it takes; `None` if some of it is infinite.
+fn specular_targets(solids: &mut [Solid]) -> Option<Targets> {
+    if solids.iter().any(|solid| solid.specular && !solid.planes.is_empty()) {
         return None;
     }
-    let mut items: Vec<_> = specular().flat_map(|solid| &solid.items).copied().collect();
+    let mut items = Vec::new();
+    for solid in solids.iter_mut().filter(|solid| solid.specular) {
+        let own = mem::take(&mut solid.items);
+        // Of a big mesh alone there are enough not to have them twice.
+        if items.is_empty() { items = own } else { items.extend(own) }
+    }
     Some(Targets { balls: cover(&mut items, HALVINGS) })
 }
 

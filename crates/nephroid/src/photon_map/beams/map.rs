@@ -2,6 +2,7 @@ use super::block::Block;
 use super::pieces::Pieces;
 use super::{Beam, BeamWidth, Beams};
 use crate::bvh::{Kind, Tree};
+use crate::observer::Work;
 use crate::photon_map::Blur;
 
 /// The largest sine at which a beam may count as nearly parallel to a ray.
@@ -44,7 +45,7 @@ impl BeamMap {
             blocks.len() as u32 - 1
         };
         // Like flat shapes, up to eight pieces are tested in about the time of eight boxes.
-        let tree = Tree::build(&pieces, |_| Kind::Flats, leaf);
+        let tree = Tree::build(&Work::silent(), &pieces, |_| Kind::Flats, leaf);
         blocks.shrink_to_fit();
         let parallel_sin = parallel_sin(&beams, radius);
         Self { beams, tree, blocks, radius, parallel_sin, emitted }
