@@ -650,11 +650,12 @@ fn spectra_by_type() {
     complaint(r#"type="blackbody">"#, r#"s.xml:2:58: error: a black body needs a "temperature", in kelvin"#);
     complaint(
         r#"type="blackbody"><float name="temperature" value="-1"/>"#,
-        r#"s.xml:2:101: error: "temperature" must be above zero, not -1"#,
+        r#"s.xml:2:102: error: "temperature" must be above zero, not -1"#,
     );
     complaint(
         r#"type="regular"><string name="values" value="1 2"/>"#,
-        r#"s.xml:2:58: error: spectrum "regular" needs "wavelength_min", in nm"#,
+        "s.xml:2:58: error: spectrum \"regular\" needs \"wavelength_min\", in nm\n\
+         s.xml:2:58: error: spectrum \"regular\" needs \"wavelength_max\", in nm",
     );
     complaint(
         r#"type="regular"><string name="range" value="1 2 3"/><string name="values" value="1 2"/>"#,
@@ -670,7 +671,7 @@ fn spectra_by_type() {
     );
     complaint(
         r#"type="irregular"><string name="wavelengths" value="400 five"/><string name="values" value="1 2"/>"#,
-        r#"s.xml:2:102: error: "five" is not a number"#,
+        r#"s.xml:2:103: error: "five" is not a number"#,
     );
     complaint(
         r#"type="blakbody">"#,

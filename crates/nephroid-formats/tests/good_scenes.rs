@@ -659,10 +659,11 @@ fn suns_and_skies_are_as_bright_as_listed() {
     ];
     for (turbidity, height, mean, of_sky, irradiance_there, of_sun) in of_mitsuba {
         let (z, x) = (height.to_radians().sin(), height.to_radians().cos());
-        let file = read(&format!(
+        let content = format!(
             r#"<emitter type="sunsky"><float name="turbidity" value="{turbidity}"/>
             <vector name="sun_direction" x="{x}" y="0" z="{z}"/></emitter>"#
-        ));
+        );
+        let file = read_with(&content, &files(), &Options::default());
         let [LightKind::Sun { irradiance, .. }, LightKind::Environment { image, scale: 1.0, .. }] =
             [0, 1].map(|i| file.scene.lights[i].kind.clone())
         else {

@@ -40,18 +40,20 @@ impl<'t> Reader<'t> {
 
     /// Values that are equally far apart, from the first wavelength to the last.
     fn regular(&self, plugin: &Plugin<'t>) -> Option<Spectrum> {
-        let range = match plugin.has("range") {
-            true => self.numbers(plugin, "range")?,
-            false => vec![
-                f64::from(self.wavelength(plugin, "wavelength_min", None)?),
-                f64::from(self.wavelength(plugin, "wavelength_max", None)?),
-            ],
+        let values = self.numbers(plugin, "values");
+        let (first, last) = if plugin.has("range") {
+            let range = self.numbers(plugin, "range")?;
+            let &[first, last] = range.as_slice() else {
+                self.log.error(plugin.location(), "\"range\" has two wavelengths");
+                return None;
+            };
+            (first, last)
+        } else {
+            let [first, last] =
+                ["wavelength_min", "wavelength_max"].map(|name| self.wavelength(plugin, name, None));
+            (f64::from(first?), f64::from(last?))
         };
-        let &[first, last] = range.as_slice() else {
-            self.log.error(plugin.location(), "\"range\" has two wavelengths");
-            return None;
-        };
-        let values = self.numbers(plugin, "values")?;
+        let values = values?;
         let steps = (values.len().max(2) - 1) as f64;
         let place = |i: usize| first + (last - first) * (i as f64 / steps);
         self.samples(plugin, values.iter().enumerate().map(|(i, value)| (place(i), *value)).collect())
@@ -70,14 +72,14 @@ impl<'t> Reader<'t> {
 
     /// What a black body radiates within a range of wavelengths.
     fn hot_body(&self, plugin: &Plugin<'t>) -> Option<Spectrum> {
-        let first = self.wavelength(plugin, "wavelength_min", Some(FIRST_NM as f32))?;
-        let last = self.wavelength(plugin, "wavelength_max", Some(LAST_NM as f32))?;
+        let first = self.wavelength(plugin, "wavelength_min", Some(FIRST_NM as f32));
+        let last = self.wavelength(plugin, "wavelength_max", Some(LAST_NM as f32));
         if plugin.property("temperature").is_none() {
             self.log.error(plugin.location(), "a black body needs a \"temperature\", in kelvin");
             return None;
         }
         let kelvin = f64::from(plugin.positive("temperature", 5000.0));
-        let range = [f64::from(first).max(FIRST_NM), f64::from(last).min(LAST_NM)];
+        let range = [f64::from(first?).max(FIRST_NM), f64::from(last?).min(LAST_NM)];
         if range[0] >= range[1] {
             self.log.warn(plugin.location(), "none of its wavelengths can be seen: it is black");
             return None;
