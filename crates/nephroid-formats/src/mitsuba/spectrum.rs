@@ -61,7 +61,8 @@ impl<'t> Reader<'t> {
 
     /// Values at wavelengths of their own.
     fn irregular(&self, plugin: &Plugin<'t>) -> Option<Spectrum> {
-        let (wavelengths, values) = (self.numbers(plugin, "wavelengths")?, self.numbers(plugin, "values")?);
+        let [wavelengths, values] = ["wavelengths", "values"].map(|name| self.numbers(plugin, name));
+        let (wavelengths, values) = (wavelengths?, values?);
         if wavelengths.len() != values.len() {
             let message = format!("{} wavelengths have {} values", wavelengths.len(), values.len());
             self.log.error(plugin.location(), message);
