@@ -642,6 +642,43 @@ fn files_of_another_kind() {
 }
 
 #[test]
+fn spectra_by_type() {
+    let complaint = |spectrum: &str, expected: &str| {
+        let start = r#"<emitter type="constant"><spectrum name="radiance" "#;
+        check(&format!("{start}{spectrum}</spectrum></emitter>"), expected);
+    };
+    complaint(r#"type="blackbody">"#, r#"s.xml:2:58: error: a black body needs a "temperature", in kelvin"#);
+    complaint(
+        r#"type="blackbody"><float name="temperature" value="-1"/>"#,
+        r#"s.xml:2:102: error: "temperature" must be above zero, not -1"#,
+    );
+    complaint(
+        r#"type="regular"><string name="values" value="1 2"/>"#,
+        r#"s.xml:2:58: error: spectrum "regular" needs "wavelength_min", in nm"#,
+    );
+    complaint(
+        r#"type="regular"><string name="range" value="1 2 3"/><string name="values" value="1 2"/>"#,
+        r#"s.xml:2:58: error: "range" has two wavelengths"#,
+    );
+    complaint(
+        r#"type="regular"><string name="range" value="700 400"/><string name="values" value="1 2"/>"#,
+        r#"s.xml:2:58: error: wavelength 400 stands after 700; they must increase"#,
+    );
+    complaint(
+        r#"type="irregular"><string name="wavelengths" value="400 500 600"/><string name="values" value="1 2"/>"#,
+        r#"s.xml:2:58: error: 3 wavelengths have 2 values"#,
+    );
+    complaint(
+        r#"type="irregular"><string name="wavelengths" value="400 five"/><string name="values" value="1 2"/>"#,
+        r#"s.xml:2:103: error: "five" is not a number"#,
+    );
+    complaint(
+        r#"type="blakbody">"#,
+        r#"s.xml:2:58: error: unknown spectrum "blakbody"; did you mean "blackbody"?"#,
+    );
+}
+
+#[test]
 fn what_cannot_be_rendered_yet() {
     check(
         r#"<shape type="hair"/>"#,

@@ -75,8 +75,8 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Towards the sun at a time and a place, with the zenith at +y and the east at +x: the algorithm of
-    /// Blanco-Muriel et al. 2001, doi 10.1016/S0038-092X(00)00156-0, without its parallax of 0.002°.
+    /// Towards the sun at a time and a place, with the zenith at +y: the algorithm of Blanco-Muriel et al. 2001,
+    /// doi 10.1016/S0038-092X(00)00156-0, without its parallax of 0.002°.
     fn sun_by_clock(&self, plugin: &Plugin<'t>) -> Vec3 {
         let number = |name, default: f32| f64::from(plugin.float(name, default));
         let (year, month, day) = (number("year", 2010.0), number("month", 7.0), number("day", 10.0));
@@ -112,7 +112,11 @@ impl<'t> Reader<'t> {
         let up = cos_lat * cos_deg(angle) * cos_declination + sin_declination * sin_lat;
         let east = -sin_deg(angle) * cos_declination;
         let north = sin_declination * cos_lat - sin_lat * cos_deg(angle) * cos_declination;
-        // The model's +z is south, which is also where versions before 2 and, turned upright, later ones have it.
-        DVec3::new(east, up, -north).as_vec3()
+        // The files' axes, before they are turned upright: older ones have the east at +x and the south at +z, later ones
+        // the south at +x and, as no map does, the west at +y.
+        match plugin.element.is_legacy {
+            true => DVec3::new(east, up, -north).as_vec3(),
+            false => DVec3::new(-north, up, east).as_vec3(),
+        }
     }
 }

@@ -25,6 +25,7 @@ mod reader;
 mod roughness;
 mod sensor;
 mod shape;
+mod spectrum;
 mod texture;
 mod transform;
 mod value;

@@ -42,8 +42,8 @@ pub(super) const PROPERTY_NAMES: &[&str] = &[
     "max_smooth_angle", "max_value", "medium", "metallic", "method", "minute", "mis_compensation", "month",
     "near_clip", "nested_bsdf", "nonlinear", "normalmap", "normals", "opacity", "origin", "p0", "p1",
     "pheomelanin", "pixel_format", "polarizing", "position", "power", "principal_point_offset_x",
-    "principal_point_offset_y", "priority", "project_seed", "quaternions", "radiance", "radius", "raw",
-    "reflectance", "resolution", "roughness", "rr_depth", "sample_border", "sample_count",
+    "principal_point_offset_y", "priority", "project_seed", "quaternions", "radiance", "radius", "range",
+    "raw", "reflectance", "resolution", "roughness", "rr_depth", "sample_border", "sample_count",
     "sample_emitters", "sample_visible", "samples_per_pass", "samples_per_pixel", "sampling_weight",
     "scale", "scale_factor", "scale_tilt", "scales", "second", "seed", "shading_samples", "shape_index",
     "sheen", "sheen_tint", "shutter_close", "shutter_open", "sigma_a", "sigma_s", "sigma_t",
@@ -175,7 +175,8 @@ pub(super) const PHASES: &[&str] = &["isotropic", "hg", "rayleigh"];
 pub(super) const PHASES_LATER: &[&str] =
     &["microflake", "sggx", "blendphase", "mixturephase", "tabphase", "tabphase_irregular", "kkay"];
 
-pub(super) const SPECTRA_LATER: &[&str] = &["blackbody", "regular", "irregular"];
+pub(super) const SPECTRA: &[&str] =
+    &["uniform", "d65", "rawconstant", "srgb", "blackbody", "regular", "irregular"];
 
 #[cfg(test)]
 mod tests {

@@ -6,10 +6,10 @@ use nephroid::math::{Affine2, Transform, Vec2};
 use nephroid::texture::{Bitmap, BitmapFilter, Checkerboard, Pixmap, Texture, Wrap};
 
 use super::document::Element;
-use super::names::{SPECTRA_LATER, TEXTURES, TEXTURES_LATER};
+use super::names::{TEXTURES, TEXTURES_LATER};
 use super::properties::Plugin;
 use super::reader::{Outcome, Reader};
-use super::value::{Property, Value};
+use super::value::Value;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::image::read_texture;
 use crate::log::shortened;
@@ -73,9 +73,9 @@ impl<'t> Reader<'t> {
             Value::Float(v) => Rgb::splat(*v as f32),
             Value::Integer(v) => Rgb::splat(*v as f32),
             Value::Color(channels) => Rgb::from(channels.map(|v| v as f32)),
-            Value::Spectrum(spectrum) => self.spectrum_color(spectrum, role, property),
+            Value::Spectrum(spectrum) => self.spectrum_color(spectrum, role, &property.location),
             Value::SpectrumFile(file) => match self.spectrum_file(file, &property.location) {
-                Some(spectrum) => self.spectrum_color(&spectrum, role, property),
+                Some(spectrum) => self.spectrum_color(&spectrum, role, &property.location),
                 None => Rgb::splat(default),
             },
             Value::Object(element) if element.tag == "spectrum" => self.spectrum_plugin(element, role),
@@ -93,10 +93,10 @@ impl<'t> Reader<'t> {
         Paint::Flat(flat)
     }
 
-    fn spectrum_color(&self, spectrum: &Spectrum, role: Role, property: &Property) -> Rgb {
+    pub(super) fn spectrum_color(&self, spectrum: &Spectrum, role: Role, at: &Location) -> Rgb {
         let rgb = spectrum.to_rgb(role);
         if !rgb.is_finite() {
-            self.log.error(&property.location, "the colour of the spectrum is not finite");
+            self.log.error(at, "the colour of the spectrum is not finite");
             return Rgb::BLACK;
         }
         rgb
@@ -111,29 +111,6 @@ impl<'t> Reader<'t> {
                 None
             }
         }
-    }
-
-    /// `<spectrum type="…">`: the kinds that are one colour by themselves.
-    fn spectrum_plugin(&mut self, element: &'t Element, role: Role) -> Rgb {
-        let plugin = self.plugin(element);
-        let color = match plugin.kind {
-            "uniform" | "rawconstant" => self.color_property(&plugin, "value", 1.0, role),
-            "srgb" => self.color_property(&plugin, "color", 1.0, role),
-            "d65" => {
-                let color = self.color_property(&plugin, "color", 1.0, Role::Reflectance);
-                color * plugin.float("scale", 1.0)
-            }
-            kind if SPECTRA_LATER.contains(&kind) => {
-                self.log.error(plugin.location(), format!("spectrum \"{kind}\" cannot be rendered yet"));
-                return Rgb::splat(0.5);
-            }
-            _ => {
-                self.unknown_kind(&plugin, &[&["uniform", "d65", "rawconstant", "srgb"], SPECTRA_LATER]);
-                return Rgb::splat(0.5);
-            }
-        };
-        plugin.finish();
-        color
     }
 
     /// A `<texture>`, read once however often it is referred to. `None` if the log says why.

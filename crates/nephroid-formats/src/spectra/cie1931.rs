@@ -4,6 +4,8 @@
 
 /// Wavelength of the first entry.
 pub(crate) const FIRST_NM: f64 = 360.0;
+/// Wavelength of the observer's last entry.
+pub(crate) const LAST_NM: f64 = 830.0;
 /// From one entry to the next.
 pub(crate) const STEP_NM: f64 = 5.0;
 

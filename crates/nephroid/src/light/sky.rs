@@ -215,8 +215,8 @@ fn observer(nanometres: f64) -> [f64; 3] {
     ]
 }
 
-/// For each 10 nm from 380 nm: the sun's radiance outside of the air in W/(cm²·µm·sr), and the absorption of ozone and of water
-/// vapour in 1/cm (the paper's table 2).
+/// For each 10 nm from 380 nm: the sun's radiance outside of the air in 100 W/(m²·nm·sr), and the absorption of ozone and of
+/// water vapour in 1/cm (the paper's table 2).
 const SUN: [[f64; 3]; 38] = [
     [165.5, 0.0008, 0.0],
     [162.3, 0.0012, 0.0],
