@@ -163,7 +163,7 @@ impl Reader<'_> {
             let bitmap = Bitmap { image, filter: BitmapFilter::Bilinear, wrap: Wrap::Repeat, to_uv };
             let normals = self.store_texture(map_at, Texture::Bitmap(bitmap));
             return Some(
-                self.store_material(at, Material::NormalMap { normals, scale: 1.0, inside: inside? }),
+                self.store_material(at, Material::NormalMap { normals, scale: 1.0, against_v: false, inside: inside? }),
             );
         }
         inside
