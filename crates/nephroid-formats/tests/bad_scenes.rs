@@ -18,7 +18,6 @@ fn files() -> MemoryFiles {
         .with("nan.obj", "v 0 0 nan\n")
         .with("empty.obj", "# nothing\n")
         .with("locale.obj", "v 0,5 0 0\n")
-        .with("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         .with("short.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n")
         .with("giant.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 2147483648\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc")
         .with("noply.ply", "PK")
