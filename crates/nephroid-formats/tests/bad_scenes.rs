@@ -9,7 +9,7 @@ use nephroid_formats::vfs::MemoryFiles;
 fn files() -> MemoryFiles {
     MemoryFiles::default()
         .with("cycle.xml", r#"<scene version="3.0.0"><include filename="cycle.xml"/></scene>"#)
-        .with("old.xml", r#"<scene version="1.0.0"/>"#)
+        .with("old.xml", r#"<scene version="9.0.0"/>"#)
         .with("broken.xml", r#"<scene version="3.0.0">
 <shape>"#)
         .with("latin1.xml", b"<scene version=\x223.0.0\x22>\x0a<!-- \xe9 --></scene>")
@@ -108,7 +108,7 @@ fn broken_includes() {
     check("<include/>", r#"s.xml:2:1: error: <include> lacks the attribute "filename""#);
     check(
         r#"<include filename="old.xml"/>"#,
-        r#"old.xml:1:17: error: unknown scene version "1.0.0"; versions 0.4 to 0.6, 2 and 3 can be read"#,
+        r#"old.xml:1:17: error: unknown scene version "9.0.0"; versions 0.4 to 0.6, 2 and 3 can be read"#,
     );
     check(
         r#"<include filename="broken.xml"/>"#,
