@@ -591,7 +591,7 @@ fn what_has_no_size_is_left_out() {
         warnings,
         [
             "s.pbrt:2:16: warning: Scale flattens space: what it would hold is left out; this is told once",
-            "s.pbrt:4:15: warning: no face of the \"trianglemesh\" has an area, and it is left out"
+            "s.pbrt:4:16: warning: no face of the \"trianglemesh\" has an area, and it is left out"
         ]
     );
 }

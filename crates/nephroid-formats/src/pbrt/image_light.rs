@@ -40,7 +40,7 @@ impl Reader<'_> {
             let image = self.decoded(&path, &bytes, !is_encoded(name), at)?;
             let mut scale = self.scale(parameters, "illuminance", 0.0);
             if let Some(found) = parameters.any("L") {
-                let factor = self.color(parameters, "L", Rgb::WHITE, Role::Reflectance);
+                let factor = self.color(parameters, "L", Rgb::WHITE, Role::Emission);
                 if factor.max_channel() != factor.min_channel() {
                     self.log.warn(
                         &found.location,
