@@ -205,13 +205,17 @@ impl Diagnostic {
         if let Some(hint) = &self.hint {
             label = label.with_message(hint);
         }
-        let report = Report::build(kind, (name.clone(), location.range()))
+        let text = quotable(location);
+        let mut report = Report::build(kind, (name.clone(), location.range()))
             .with_config(config)
-            .with_message(&self.message)
-            .with_label(label)
-            .finish();
+            .with_message(&self.message);
+        // In an empty text there is no byte to point at, and pointing at the first panics.
+        if !text.is_empty() {
+            report = report.with_label(label);
+        }
+        let report = report.finish();
         let mut out = Vec::new();
-        let quoted = ariadne::sources([(name, quotable(location))]);
+        let quoted = ariadne::sources([(name, text)]);
         match report.write(quoted, &mut out) {
             Ok(()) => String::from_utf8_lossy(&out).into_owned(),
             Err(_) => format!("{self}\n"),
@@ -317,6 +321,16 @@ mod tests {
         assert!(quoted.contains("a.xml:2:15"), "{quoted}");
         assert!(quoted.contains("<bsdf type=\"difuse\"/>"), "{quoted}");
         assert!(message.render(true).contains('\u{1b}'));
+    }
+
+    /// As what is wrong with a whole `.glb`, of which the text is one line.
+    #[test]
+    fn megabytes_are_not_quoted_from_the_first_byte_on() {
+        let source = Source::new("a.glb", "x".repeat(5000));
+        for range in [0..0, 0..1, 0..5000, 4000..4001] {
+            let quoted = Diagnostic::warning(&Location::new(&source, range), "no camera").render(false);
+            assert!(quoted.contains("no camera") && !quoted.contains("xx"), "{quoted}");
+        }
     }
 
     #[test]

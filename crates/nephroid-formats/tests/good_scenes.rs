@@ -713,3 +713,37 @@ fn lamps_of_ies_files() {
     assert_eq!((image.brightest(), image.pixel(0, image.height - 1)), (1.0, Rgb::WHITE));
     assert_eq!(image.pixel(0, 0), Rgb::BLACK);
 }
+
+/// As in the box of Cornell that comes with Mitsuba: the lamp has an id, and the shape refers to it.
+#[test]
+fn lamps_that_shapes_refer_to() {
+    let content = r#"<emitter type="area" id="lamp"><rgb name="radiance" value="3"/></emitter>
+        <shape type="Rectangle"><ref id="lamp"/></shape>"#;
+    let file = read_with(content, &files(), &Options::default());
+    assert_eq!((file.scene.lights.len(), file.warnings.len()), (0, 0));
+    assert!(file.scene.shapes[0].emission.is_some() && file.scene.shapes[0].geometry == Geometry::Rectangle);
+}
+
+#[test]
+fn scenes_without_a_sensor_are_seen_whole() {
+    let text =
+        r#"<scene version="3.0.0"><shape type="disk"><sensor type="irradiancemeter"/></shape></scene>"#;
+    let file = read_scene_str("s.xml", text, &files(), &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(file.fitted.camera && !file.fitted.sky);
+    let messages: Vec<_> = file.warnings.iter().map(ToString::to_string).collect();
+    let expected = "s.xml:1:43: warning: a sensor on a shape measures and takes no picture: it is left out";
+    assert_eq!(messages, [expected]);
+}
+
+#[test]
+fn no_metal_has_a_negative_index() {
+    let content =
+        r#"<bsdf type="conductor"><rgb name="eta" value="-0.05, 4, 5"/><rgb name="k" value="1"/></bsdf>"#;
+    let file = read_with(content, &files(), &Options::default());
+    let Some(Material::Conductor { metal: Metal::Index { eta, .. }, .. }) =
+        file.scene.materials.iter().next()
+    else {
+        panic!("a conductor")
+    };
+    assert_eq!((*eta, file.warnings.len()), (Rgb::new(0.0, 4.0, 5.0), 1));
+}

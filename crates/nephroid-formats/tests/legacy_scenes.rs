@@ -201,3 +201,35 @@ fn old_names_are_not_those_of_newer_versions() {
         "s.xml:2:35: error: <shape type=\"sphere\"> has no property \"raduis\"; did you mean \"radius\"?"
     );
 }
+
+/// Mitsuba 2 and 3 take what says 1 for an older file.
+#[test]
+fn version_1_is_an_old_one() {
+    let text = r#"<scene version="1.0.0"><sensor type="perspective"/>
+<shape type="sphere"><bsdf type="dielectric"><float name="intIOR" value="1.25"/></bsdf></shape></scene>"#;
+    let file = read_text(text).unwrap_or_else(|e| panic!("{e}"));
+    assert!(matches!(&file.scene.materials.iter().next(), Some(Material::Dielectric { int_ior: 1.25, .. })));
+}
+
+#[test]
+fn what_is_given_twice_counts_as_given_last() {
+    let file = read(
+        r#"<shape type="sphere"><float name="radius" value="1"/><float name="radius" value="2"/></shape>"#,
+    );
+    assert!(matches!(file.scene.shapes[0].geometry, Geometry::Sphere { radius: 2.0, .. }));
+    assert_eq!(warnings(&file), ["s.xml:2:54: warning: \"radius\" is given twice; the last counts"]);
+}
+
+#[test]
+fn settings_of_old_films_mean_nothing() {
+    let text = r#"<scene version="0.6.0"><sensor type="perspective"><film type="ldrfilm">
+<boolean name="attachLog" value="false"/><string name="tonemapMethod" value="reinhard"/></film></sensor></scene>"#;
+    let file = read_text(text).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(
+        warnings(&file),
+        [
+            "s.xml:2:34: warning: \"attach_log\" means nothing in <film type=\"ldrfilm\">",
+            "s.xml:2:78: warning: \"tonemap_method\" means nothing in <film type=\"ldrfilm\">"
+        ]
+    );
+}

@@ -194,7 +194,9 @@ fn wards_model_is_a_blend() {
 fn tilted_normals() {
     let map = r#"<texture type="bitmap" name="normalmap"><string name="filename" value="a.png"/><boolean name="raw" value="true"/></texture>"#;
     let (scene, material) = silent(&format!(r#"<bsdf type="normalmap">{map}<bsdf type="diffuse"/></bsdf>"#));
-    let Material::NormalMap { normals, scale: 1.0, inside } = material else { panic!("{material:?}") };
+    let Material::NormalMap { normals, scale: 1.0, against_v: false, inside } = material else {
+        panic!("{material:?}")
+    };
     assert_eq!(scene.textures.eval(normals, nephroid::math::Vec2::ZERO).r, 128.0 / 255.0);
     assert!(matches!(scene.materials[inside], Material::Diffuse { .. }));
     let bumps = r#"<bsdf type="bumpmap"><texture type="checkerboard"/><float name="scale" value="0.1"/><bsdf type="diffuse"/></bsdf>"#;

@@ -148,7 +148,10 @@ fn parameters_that_are_none() {
 fn transforms() {
     check("Translate 1 2", "s.pbrt:2:1: error: Translate takes 3 numbers, not 2");
     check("Scale 1 2 x", "s.pbrt:2:11: error: \"x\" is not a number");
-    check("Scale 1 0 1", "s.pbrt:2:1: error: Scale flattens space or overflows; no scale may be zero");
+    check_whole(
+        "Scale 1 0 1 Camera \"perspective\" WorldBegin",
+        "s.pbrt:1:1: error: Scale flattens space or overflows; no scale may be zero",
+    );
     check("Rotate 10 0 0 0", "s.pbrt:2:1: error: the axis of the rotation has no length");
     check(
         "LookAt 0 0 0 0 0 0 0 1 0",
@@ -259,10 +262,6 @@ fn meshes() {
     check(
         &mesh("\"integer indices\" [0 1 -2]"),
         "s.pbrt:2:71: error: vertex -2 does not exist: the first is 0",
-    );
-    check(
-        &mesh("\"integer indices\" [0 1 1]"),
-        "s.pbrt:2:8: error: no face of the \"trianglemesh\" has an area",
     );
     check(&mesh("\"normal N\" [0 0 1]"), "s.pbrt:2:64: error: 1 of \"N\" for 3 of \"P\"");
     check(&mesh("\"point2 uv\" [0 0 1]"), "s.pbrt:2:65: error: \"uv\": 3 numbers are no point2s of 2 each");

@@ -577,3 +577,44 @@ fn colours_of_wide_spaces_become_srgb() {
     let Material::Diffuse { reflectance } = diffuse else { panic!("{diffuse:?}") };
     near(constant(&scene, reflectance), [0.5; 3], 1e-3);
 }
+
+/// Animations hide things so.
+#[test]
+fn what_has_no_size_is_left_out() {
+    let (file, warnings) = warned(
+        "AttributeBegin Scale 0 0 0 Shape \"sphere\" Translate 1 2 3 Shape \"disk\" LightSource \"point\" AttributeEnd
+        AttributeBegin Scale 1 0 1 Identity Shape \"disk\" AttributeEnd
+        Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 ] \"integer indices\" [ 0 1 2 ] Shape \"sphere\"",
+    );
+    assert_eq!((file.scene.shapes.len(), file.scene.lights.len()), (2, 0));
+    assert_eq!(
+        warnings,
+        [
+            "s.pbrt:2:16: warning: Scale flattens space: what it would hold is left out; this is told once",
+            "s.pbrt:4:16: warning: no face of the \"trianglemesh\" has an area, and it is left out"
+        ]
+    );
+}
+
+#[test]
+fn heights_may_go_down() {
+    let file = read(
+        "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"grey.png\" \"float scale\" -3.5
+        Texture \"b\" \"float\" \"checkerboard\" \"float tex1\" -1 \"float tex2\" 2
+        Material \"diffuse\" \"texture displacement\" \"b\" Shape \"sphere\"",
+    );
+    World::new(file.scene).expect("it can be rendered");
+}
+
+#[test]
+fn spellings_of_version_3() {
+    let text =
+        "PixelFilter \"triangle\" \"float xwidth\" 1.5 \"float ywidth\" 1.5 Camera \"perspective\" WorldBegin
+        LightSource \"infinite\" \"string mapname\" \"grey.png\" \"rgb L\" [ 2 2 2 ]
+        MakeNamedMedium \"smoke\" \"string type\" \"heterogeneous\" \"integer nx\" 1 \"integer ny\" 1
+        \"integer nz\" 1 \"float density\" [ 1 ]";
+    let file = read_whole(text, &Options::default());
+    assert_eq!(file.scene.film.filter, Filter::Tent { radius: 1.5 });
+    let LightKind::Environment { scale, .. } = file.scene.lights[0].kind else { panic!("a sky") };
+    assert_eq!((scale, file.warnings.len()), (2.0, 2));
+}

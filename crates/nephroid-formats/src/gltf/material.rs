@@ -54,7 +54,8 @@ impl<'d> Reader<'d> {
             && let Some(normals) = self.bitmap(info, Purpose::Raw)
         {
             let scale = info.number("scale").unwrap_or(1.0) as f32;
-            inside = self.store_material(material, Material::NormalMap { normals, scale, inside });
+            let map = Material::NormalMap { normals, scale, against_v: true, inside };
+            inside = self.store_material(material, map);
         }
         if !surface.transmits {
             inside = self.store_material(material, Material::TwoSided { front: inside, back: inside });

@@ -50,15 +50,17 @@ pub struct MeshError {
     pub line: Option<usize>,
     /// What is wrong.
     pub message: String,
+    /// Whether all that is wrong is that none of its faces has an area: there is nothing to see.
+    pub is_flat: bool,
 }
 
 impl MeshError {
     fn new(message: impl Into<String>) -> Self {
-        Self { line: None, message: message.into() }
+        Self { line: None, message: message.into(), is_flat: false }
     }
 
     fn at(line: usize, message: impl Into<String>) -> Self {
-        Self { line: Some(line), message: message.into() }
+        Self { line: Some(line), message: message.into(), is_flat: false }
     }
 }
 
@@ -72,7 +74,7 @@ pub(crate) fn without_degenerate(mut mesh: Mesh, has_own_normals: bool) -> Resul
     mesh.triangles.retain(|triangle| has_area(triangle.map(|i| positions[i as usize])));
     let degenerate = all - mesh.triangles.len();
     if degenerate == all {
-        return Err(MeshError::new("no face of the file has an area"));
+        return Err(MeshError { is_flat: true, ..MeshError::new("no face of the file has an area") });
     }
     Ok(MeshFile { mesh, degenerate, has_own_normals })
 }

@@ -201,7 +201,7 @@ fn elements<E: PropertyAccess>(
     Parser::<E>::new().read_payload_for_element(reader, element, header).map_err(|error| {
         let line = error.line();
         let message = format!("broken {}: {}", element.name, one_line(&error.to_string()));
-        MeshError { line, message }
+        MeshError { line, message, is_flat: false }
     })
 }
 

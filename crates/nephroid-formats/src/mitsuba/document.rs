@@ -219,7 +219,8 @@ impl Loader<'_> {
         let at = Location::new(source, version.range_value());
         let major = version.value().split('.').next().and_then(|major| major.trim().parse::<u32>().ok());
         let message = match major {
-            Some(major @ (0 | 2 | 3)) => return Some(major),
+            // Mitsuba takes what is older than 2 for what was before it, and there was no version 1.
+            Some(major @ 0..=3) => return Some(major),
             Some(_) => {
                 Diagnostic::error(&at, format!("unknown scene version \"{}\"", shortened(version.value())))
                     .hint("versions 0.4 to 0.6, 2 and 3 can be read")

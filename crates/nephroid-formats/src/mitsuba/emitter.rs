@@ -38,6 +38,8 @@ impl<'t> Reader<'t> {
             }
             "ies" => self.ies(&plugin),
             "collimated" => Some(self.collimated(&plugin)),
+            // One that shapes refer to.
+            "area" if plugin.id().is_some() => return,
             "area" => {
                 let message =
                     Diagnostic::error(plugin.location(), "an \"area\" emitter belongs inside a shape");

@@ -1,5 +1,6 @@
 //! Indices of refraction: numbers, names of transparent media, metals.
 
+use nephroid::color::Rgb;
 use nephroid::material::Metal;
 
 use super::properties::Plugin;
@@ -68,6 +69,21 @@ impl<'t> Reader<'t> {
         default
     }
 
+    /// A part of the index of a metal. Spectra made RGB can have a negative channel, which no metal has.
+    fn metal_index(&mut self, plugin: &Plugin<'t>, name: &'static str, default: f32) -> Rgb {
+        let index = self.color_property(plugin, name, default, Role::Index);
+        if index.to_array().iter().all(|v| *v >= 0.0 || !v.is_finite()) {
+            return index;
+        }
+        if let Some(property) = plugin.property(name) {
+            self.log.warn(
+                &property.location,
+                format!("\"{name}\" is negative in a channel, and becomes 0 there"),
+            );
+        }
+        index.map(|v| v.max(0.0))
+    }
+
     /// A conductor by its name, or by `eta` and `k`.
     pub(super) fn metal(&mut self, plugin: &Plugin<'t>) -> Metal {
         let material = plugin.text("material");
@@ -76,8 +92,8 @@ impl<'t> Reader<'t> {
                 self.log.error(at, "give either \"material\" or \"eta\" and \"k\"");
             }
             return Metal::Index {
-                eta: self.color_property(plugin, "eta", 0.0, Role::Index),
-                k: self.color_property(plugin, "k", 1.0, Role::Index),
+                eta: self.metal_index(plugin, "eta", 0.0),
+                k: self.metal_index(plugin, "k", 1.0),
             };
         }
         plugin.ignore(&["eta", "k"]);

@@ -142,7 +142,7 @@ impl<'t> Reader<'t> {
                 let message = Diagnostic::warning(&element.location, "the normals are decoded from sRGB");
                 self.log.push(message.hint("<boolean name=\"raw\" value=\"true\"/> takes them as they are"));
             }
-            Material::NormalMap { normals: texture, scale, inside }
+            Material::NormalMap { normals: texture, scale, against_v: false, inside }
         };
         Some(self.store(plugin, tilted))
     }

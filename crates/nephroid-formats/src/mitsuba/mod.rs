@@ -96,7 +96,9 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let scene = Scene { camera, film, textures, materials, meshes, shapes, groups, instances, lights, media };
     let sample_count = sensor.sample_count;
     let fitted = Fitted::default();
-    Some(SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins, fitted })
+    let mut file = SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins, fitted };
+    file.fit(Fitted { camera: sensor.is_missing, sky: false });
+    Some(file)
 }
 
 /// Every `id` of the scene and the other names that aliases give them.

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use nephroid::math::{Transform, Vec3};
 
 use super::document::Element;
-use super::names::{PROPERTY_NAMES, property_is_known};
+use super::names::{PROPERTY_NAMES, SHAPES, property_is_known};
 use super::value::{Ids, Property, Value, property};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::log::{Log, shortened};
@@ -25,11 +25,21 @@ impl<'t> Plugin<'t> {
     pub(super) fn new(element: &'t Element, ids: &Ids<'t>, log: &'t Log) -> Self {
         element.allow_attributes(&["type", "id", "name", "version"], log);
         let kind = element.require("type", log).map_or("", |a| a.value.as_str());
+        // Where files do not differ by case, neither do Mitsuba's plugins.
+        let is_shape = |known: &&&'static str| element.tag == "shape" && known.eq_ignore_ascii_case(kind);
+        let kind = SHAPES.iter().find(is_shape).copied().unwrap_or(kind);
         let mut properties: Vec<Property> = Vec::new();
         for child in &element.children {
             let Some(property) = property(child, ids, log) else { continue };
-            if !property.name.is_empty() && properties.iter().any(|p| p.name == property.name) {
-                log.error(&child.location, format!("\"{}\" is given twice", property.name));
+            let first = properties.iter().position(|p| !p.name.is_empty() && p.name == property.name);
+            if let Some(first) = first {
+                let message = format!("\"{}\" is given twice", property.name);
+                if element.is_legacy {
+                    log.warn(&child.location, format!("{message}; the last counts"));
+                    properties[first] = property;
+                } else {
+                    log.error(&child.location, message);
+                }
                 continue;
             }
             properties.push(property);

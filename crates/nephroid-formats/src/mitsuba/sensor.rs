@@ -2,13 +2,14 @@
 
 use nephroid::camera::{Camera, FovAxis, Projection};
 use nephroid::film::{Crop, FilmSettings, Filter};
-use nephroid::math::Vec2;
+use nephroid::math::{Transform, Vec2};
 
 use super::document::Element;
 use super::names::{FILMS_LATER, FILTERS_LATER, SAMPLERS, SENSORS_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
 use crate::diagnostic::Diagnostic;
+use crate::fit;
 
 /// Longest side of a picture in pixels.
 const MAX_SIDE: u32 = 65_536;
@@ -18,6 +19,16 @@ pub(super) struct Sensor {
     pub(super) camera: Camera,
     pub(super) film: FilmSettings,
     pub(super) sample_count: Option<u32>,
+    /// Whether the file has none, and shapes that one can be fitted to.
+    pub(super) is_missing: bool,
+}
+
+impl Sensor {
+    fn fitted() -> Self {
+        let projection = fit::perspective(45.0);
+        let camera = Camera { to_world: Transform::IDENTITY, projection, medium: None };
+        Self { camera, film: fit::film(), sample_count: None, is_missing: true }
+    }
 }
 
 impl<'t> Reader<'t> {
@@ -25,6 +36,9 @@ impl<'t> Reader<'t> {
     pub(super) fn sensor(&mut self, elements: &'t [Element]) -> Option<Sensor> {
         let mut sensors = elements.iter().filter(|e| e.tag == "sensor");
         let Some(first) = sensors.next() else {
+            if elements.iter().any(|element| element.tag == "shape") {
+                return Some(Sensor::fitted());
+            }
             let message = Diagnostic::error(&self.origins.scene, "the scene has no <sensor>");
             self.log.push(message.hint("add <sensor type=\"perspective\"> with a <film>"));
             return None;
@@ -57,7 +71,8 @@ impl<'t> Reader<'t> {
         let sample_count = plugin.only_object("sampler").and_then(|sampler| self.sample_count(sampler));
         let medium = self.surroundings(&plugin);
         plugin.finish();
-        Some(Sensor { camera: Camera { to_world, projection, medium }, film, sample_count })
+        let camera = Camera { to_world, projection, medium };
+        Some(Sensor { camera, film, sample_count, is_missing: false })
     }
 
     /// A perspective camera with a lens. As in Mitsuba, the lens must have a radius, and what is in focus

@@ -61,6 +61,10 @@ impl<'t> Reader<'t> {
         let to_world = plugin.transform("to_world");
         let flip_normals = plugin.boolean("flip_normals", false);
         plugin.ignore(&["silhouette_sampling_weight"]);
+        for (_, sensor) in plugin.objects("sensor") {
+            let message = "a sensor on a shape measures and takes no picture: it is left out";
+            self.log.warn(&sensor.location, message);
+        }
         let mut boundary = self.boundary(plugin);
         let emission = self.emission(plugin, &mut boundary);
         let material = match plugin.only_object("bsdf") {
@@ -171,7 +175,11 @@ impl<'t> Reader<'t> {
             Err(error) => {
                 let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
                 let message = format!("{}{line}: {}", path.display(), error.message);
-                self.log.push(Diagnostic::error(at, message));
+                if error.is_flat {
+                    self.log.warn(at, format!("{message}, and it is left out"));
+                } else {
+                    self.log.error(at, message);
+                }
                 None
             }
         }

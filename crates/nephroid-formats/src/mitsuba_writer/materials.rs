@@ -107,7 +107,9 @@ impl Writer<'_, '_> {
                 self.inside(first);
                 self.inside(second);
             }
-            Material::NormalMap { normals, scale, inside } => self.tilted(id, normals, scale, inside, false),
+            Material::NormalMap { normals, scale, inside, .. } => {
+                self.tilted(id, normals, scale, inside, false)
+            }
             Material::BumpMap { heights, scale, inside } => self.tilted(id, heights, scale, inside, true),
             Material::Dispersive { inside, .. } => {
                 self.warn("Mitsuba 3 refracts all wavelengths alike: dispersion is left out");

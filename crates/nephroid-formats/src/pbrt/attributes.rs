@@ -24,7 +24,7 @@ impl Reader<'_> {
         }
         self.in_world = true;
         self.state.ctm = Transform::IDENTITY;
-        self.coordinate_systems.insert("world".into(), Transform::IDENTITY);
+        self.coordinate_systems.insert("world".into(), (Transform::IDENTITY, false));
         if self.camera.is_none() && !self.given.contains_key("Camera") {
             let message = Diagnostic::error(at, "the scene has no Camera");
             self.log.push(message.hint("write Camera \"perspective\" before WorldBegin"));

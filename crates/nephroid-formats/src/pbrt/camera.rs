@@ -69,7 +69,7 @@ impl Reader<'_> {
             return;
         }
         let to_world = self.state.ctm.inverse();
-        self.coordinate_systems.insert("camera".into(), to_world);
+        self.coordinate_systems.insert("camera".into(), (to_world, false));
         // What is right of the picture has positive x in pbrt, and negative x here.
         let mirror = Transform::scale(DVec3::new(-1.0, 1.0, 1.0));
         let window = Window::new(parameters, self);
@@ -176,7 +176,9 @@ impl Reader<'_> {
     }
 
     fn filter(&mut self, parameters: &Parameters) {
-        let radius = |default: f64| parameters.positive("xradius", default);
+        // The former are of older files.
+        let name = if parameters.has("xwidth") { "xwidth" } else { "xradius" };
+        let radius = |default: f64| parameters.positive(name, default);
         self.filter = match parameters.kind.as_str() {
             "box" => {
                 if radius(0.5) != 0.5 {
@@ -203,7 +205,7 @@ impl Reader<'_> {
             }
         };
         // Filters are as wide as high, and those with long tails have them.
-        parameters.ignore(&["xradius", "yradius"]);
+        parameters.ignore(&["xradius", "yradius", "xwidth", "ywidth", "alpha"]);
         parameters.finish();
     }
 }

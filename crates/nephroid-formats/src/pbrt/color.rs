@@ -59,7 +59,7 @@ impl Reader<'_> {
                 _ => return self.too_many(found, "one spectrum"),
             },
             (Kind::Float | Kind::Integer, Values::Numbers(list)) => match list.as_slice() {
-                [value] if *value >= 0.0 => Rgb::splat(*value as f32),
+                [value] if *value >= 0.0 || role == Role::Number => Rgb::splat(*value as f32),
                 [value] => {
                     self.log.error(at, format!("\"{}\" must be zero or more, not {value}", found.name));
                     return None;

@@ -14,6 +14,7 @@ use super::image::{Change, is_encoded};
 use super::light::luminance;
 use super::parameters::Parameters;
 use super::reader::Reader;
+use crate::spectra::Role;
 
 impl Reader<'_> {
     /// The sky: of one colour, or an image in a square of equal areas.
@@ -28,7 +29,8 @@ impl Reader<'_> {
     }
 
     fn sky(&mut self, parameters: &Parameters) -> Option<LightKind> {
-        if let Some(radiance) = parameters.any("L") {
+        let old = parameters.has("mapname");
+        if let Some(radiance) = parameters.any("L").filter(|_| !old) {
             self.log.error(&radiance.location, "give either \"L\" or \"filename\"");
         }
         let to_world = self.rigid(parameters, self.state.ctm);
@@ -36,7 +38,17 @@ impl Reader<'_> {
             self.log.warn(at, "\"mapname\" is of older files: by longitude and latitude, the zenith +z");
             let (path, bytes) = self.read_file(name, at)?;
             let image = self.decoded(&path, &bytes, !is_encoded(name), at)?;
-            let scale = self.scale(parameters, "illuminance", 0.0);
+            let mut scale = self.scale(parameters, "illuminance", 0.0);
+            if let Some(found) = parameters.any("L") {
+                let factor = self.color(parameters, "L", Rgb::WHITE, Role::Emission);
+                if factor.max_channel() != factor.min_channel() {
+                    self.log.warn(
+                        &found.location,
+                        "the image of a sky cannot be coloured: the mean of \"L\" counts",
+                    );
+                }
+                scale *= factor.mean();
+            }
             let image = self.store_image(image, at);
             // There longitude is the angle about z from +x; here columns go from −z by +x, and +y is up.
             let columns = DMat3::from_cols(DVec3::Y, DVec3::Z, -DVec3::X);

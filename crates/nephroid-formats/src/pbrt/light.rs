@@ -33,7 +33,7 @@ impl Reader<'_> {
             }
         };
         parameters.finish();
-        let Some(kind) = kind else { return };
+        let Some(kind) = kind.filter(|_| !self.state.is_hidden) else { return };
         if self.object.is_some() {
             let message = "the light is of the scene, and not of the object that it stands in";
             self.log.warn(&parameters.at, message);

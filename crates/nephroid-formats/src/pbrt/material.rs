@@ -162,9 +162,10 @@ impl Reader<'_> {
             to_uv.translation = Vec2::Y;
             let bitmap = Bitmap { image, filter: BitmapFilter::Bilinear, wrap: Wrap::Repeat, to_uv };
             let normals = self.store_texture(map_at, Texture::Bitmap(bitmap));
-            return Some(
-                self.store_material(at, Material::NormalMap { normals, scale: 1.0, inside: inside? }),
-            );
+            return Some(self.store_material(
+                at,
+                Material::NormalMap { normals, scale: 1.0, against_v: false, inside: inside? },
+            ));
         }
         inside
     }

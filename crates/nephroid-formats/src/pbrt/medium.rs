@@ -69,7 +69,14 @@ impl Reader<'_> {
     }
 
     fn new_medium(&mut self, name: &str, parameters: &Parameters) -> Option<Handle<Medium>> {
-        let kind = parameters.kind.as_str();
+        let kind = match parameters.kind.as_str() {
+            "heterogeneous" => {
+                let message = "medium \"heterogeneous\" is of older files; \"uniformgrid\" stands for it";
+                self.log.warn(&parameters.at, message);
+                "uniformgrid"
+            }
+            kind => kind,
+        };
         if !MEDIA.contains(&kind) {
             if MEDIA_LATER.contains(&kind) {
                 self.left_out(&parameters.at, &format!("medium \"{kind}\""));

@@ -8,7 +8,7 @@ use super::include::inflated;
 use super::parameter::Kind;
 use super::parameters::Parameters;
 use super::reader::Reader;
-use crate::diagnostic::{Diagnostic, Location};
+use crate::diagnostic::Location;
 use crate::mesh::{MeshFile, MeshOptions, read_ply, replace_missing_normals, without_degenerate};
 
 impl Reader<'_> {
@@ -129,7 +129,11 @@ impl Reader<'_> {
             Err(error) => {
                 let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
                 let message = format!("{}{line}: {}", path.display(), error.message);
-                self.log.push(Diagnostic::error(at, message));
+                if error.is_flat {
+                    self.log.warn(at, format!("{message}, and it is left out"));
+                } else {
+                    self.log.error(at, message);
+                }
                 None
             }
         }
@@ -147,8 +151,9 @@ impl Reader<'_> {
                 Some(self.meshes.push(oriented(file)))
             }
             Err(_) => {
-                let message = format!("no face of the \"{}\" has an area", parameters.kind);
-                self.log.error(&parameters.at, message);
+                let message =
+                    format!("no face of the \"{}\" has an area, and it is left out", parameters.kind);
+                self.log.warn(&parameters.at, message);
                 None
             }
         }

@@ -58,7 +58,7 @@ impl Reader<'_> {
             self.log.push(message);
             return;
         };
-        let Some(group) = *known else { return };
+        let Some(group) = known.filter(|_| !self.state.is_hidden) else { return };
         let to_world = self.state.ctm;
         if !to_world.is_invertible() {
             self.log.error(at, "the place of the object flattens space or overflows");

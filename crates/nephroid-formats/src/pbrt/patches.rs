@@ -44,7 +44,8 @@ impl Reader<'_> {
     }
 
     pub(super) fn loop_subdivision(&mut self, parameters: &Parameters) -> Option<Handle<Mesh>> {
-        let levels = parameters.integer("levels", 3, 0..=12);
+        let levels =
+            parameters.integer(if parameters.has("nlevels") { "nlevels" } else { "levels" }, 3, 0..=12);
         parameters.ignore(&["scheme"]);
         let indices = self.indices(parameters, 3);
         let mut cage = self.vertices(parameters)?;

@@ -40,7 +40,10 @@ pub(super) struct Reader<'t> {
     pub(super) in_world: bool,
     pub(super) state: State,
     pub(super) saved: Vec<Saved>,
-    pub(super) coordinate_systems: BTreeMap<String, Transform>,
+    /// With whether a scale of zero hides what is in them.
+    pub(super) coordinate_systems: BTreeMap<String, (Transform, bool)>,
+    /// Whether a message has said that something is hidden.
+    pub(super) told_of_hidden: bool,
 
     pub(super) camera: Option<Camera>,
     pub(super) film: FilmSettings,
@@ -103,6 +106,7 @@ impl<'t> Reader<'t> {
             state: State::default(),
             saved: Vec::new(),
             coordinate_systems: BTreeMap::new(),
+            told_of_hidden: false,
             camera: None,
             film: FilmSettings { width: 1280, height: 720, crop: None, filter: Filter::Box },
             filter: Filter::Gaussian { std_dev: 0.5 },

@@ -35,6 +35,7 @@ impl Reader<'_> {
         let shape = self.surface(parameters);
         let at = parameters.at.clone();
         match (&mut self.object, shape) {
+            (_, Some(_)) if self.state.is_hidden => {}
             (Some(object), Some(shape)) => {
                 object.shapes.push(shape);
                 object.places.push(at);

@@ -29,6 +29,8 @@ pub(super) enum Current {
 pub(super) struct State {
     /// From what is described next to the world; before `WorldBegin`, from the world to the camera.
     pub(super) ctm: Transform,
+    /// Whether a scale of zero hides what is described next; `ctm` is without it.
+    pub(super) is_hidden: bool,
     pub(super) reverse_orientation: bool,
     pub(super) material: Current,
     pub(super) area_light: Option<Rc<AreaLight>>,

@@ -39,7 +39,8 @@ impl Reader<'_> {
     }
 
     fn new_texture(&mut self, parameters: &Parameters, is_color: bool) -> Option<Handle<Texture>> {
-        let role = if is_color { Role::Reflectance } else { Role::Index };
+        let role = if is_color { Role::Reflectance } else { Role::Number };
+        let factor = if is_color { Role::Index } else { Role::Number };
         let texture = match parameters.kind.as_str() {
             "constant" => {
                 let value = self.texture_or_color(parameters, "value", Rgb::WHITE, role);
@@ -48,7 +49,7 @@ impl Reader<'_> {
             }
             "scale" => {
                 let a = self.texture_or_color(parameters, "tex", Rgb::WHITE, role);
-                let b = self.texture_or_color(parameters, "scale", Rgb::WHITE, Role::Index);
+                let b = self.texture_or_color(parameters, "scale", Rgb::WHITE, factor);
                 // The names of older files.
                 let c = self.texture_or_color(parameters, "tex1", Rgb::WHITE, role);
                 let d = self.texture_or_color(parameters, "tex2", Rgb::WHITE, role);
@@ -133,7 +134,11 @@ impl Reader<'_> {
         let filter = parameters.choice("filter", BitmapFilter::Bilinear, &filters);
         let wrap = self.wrap(parameters);
         let [scale, delta] = self.uv_mapping(parameters);
-        let factor = parameters.not_negative("scale", 1.0) as f32;
+        // Heights may go down.
+        let factor = match is_color {
+            true => parameters.not_negative("scale", 1.0),
+            false => parameters.float("scale", 1.0),
+        } as f32;
         let invert = parameters.boolean("invert", false);
         let raw = self.is_raw(parameters);
         parameters.ignore(&["maxanisotropy", "trilinear"]);

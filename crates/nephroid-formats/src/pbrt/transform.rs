@@ -10,6 +10,19 @@ use crate::log::shortened;
 impl Reader<'_> {
     pub(super) fn transform(&mut self, directive: &'static str, at: &Location, tokens: &mut Tokens) {
         let Some(step) = self.step(directive, at, tokens) else { return };
+        if matches!(directive, "Identity" | "Transform") {
+            self.state.is_hidden = false;
+        }
+        // What animations hide has no size. That something is not finite is another matter.
+        if self.in_world && step.0.is_finite() && step.0.matrix3.determinant() == 0.0 {
+            self.state.is_hidden = true;
+            if !self.told_of_hidden {
+                let message = format!("{directive} flattens space: what it would hold is left out");
+                self.log.push(Diagnostic::warning(at, message).hint("this is told once"));
+            }
+            self.told_of_hidden = true;
+            return;
+        }
         if !step.is_invertible() {
             let message = Diagnostic::error(at, format!("{directive} flattens space or overflows"));
             self.log.push(message.hint("no scale may be zero"));
@@ -80,11 +93,11 @@ impl Reader<'_> {
 
     pub(super) fn coordinate_system(&mut self, directive: &str, name: &str, at: &Location) {
         if directive == "CoordinateSystem" {
-            self.coordinate_systems.insert(name.to_owned(), self.state.ctm);
+            self.coordinate_systems.insert(name.to_owned(), (self.state.ctm, self.state.is_hidden));
             return;
         }
         match self.coordinate_systems.get(name) {
-            Some(transform) => self.state.ctm = *transform,
+            Some(known) => (self.state.ctm, self.state.is_hidden) = *known,
             None => {
                 let message = format!("no coordinate system is called \"{}\"", shortened(name));
                 let known = self.coordinate_systems.keys().map(String::as_str);

@@ -24,6 +24,8 @@ pub(crate) enum Role {
     Emission,
     /// An index of refraction: seen under D65, and not clamped from above.
     Index,
+    /// A number of a texture, such as a height: also below zero.
+    Number,
 }
 
 /// A value for each wavelength.

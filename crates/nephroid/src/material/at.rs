@@ -53,8 +53,8 @@ impl Material {
                 }
                 Self::TwoSided { front, .. } => front,
                 Self::Dispersive { inside, .. } => inside,
-                Self::NormalMap { normals, scale, inside } => {
-                    surface = surface.mapped(textures, normals, scale);
+                Self::NormalMap { normals, scale, against_v, inside } => {
+                    surface = surface.mapped(textures, normals, scale, against_v);
                     inside
                 }
                 Self::BumpMap { heights, scale, inside } => {

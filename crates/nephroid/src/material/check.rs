@@ -79,7 +79,7 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
                 problems.blend(materials, material);
             }
         }
-        Material::NormalMap { normals: texture, scale, inside }
+        Material::NormalMap { normals: texture, scale, inside, .. }
         | Material::BumpMap { heights: texture, scale, inside } => {
             problems.exists("the map", *texture);
             if !scale.is_finite() {

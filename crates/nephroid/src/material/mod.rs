@@ -209,6 +209,9 @@ pub enum Material {
         normals: Handle<Texture>,
         /// Multiplies the first two coordinates.
         scale: f32,
+        /// Whether the second coordinate goes towards smaller `v` also where texture coordinates are mirrored, as in
+        /// glTF. Else it is square to the first and counter-clockwise of it, as in Mitsuba and pbrt.
+        against_v: bool,
         /// The material.
         inside: Handle<Material>,
     },

@@ -12,9 +12,18 @@ const LEAST_COS: f32 = 0.02;
 impl Surface {
     /// With the normal that a colour tells: its channels, from 0 to 1, are the coordinates, from −1 to 1, along the
     /// shading frame, the first two of them scaled (Cohen, Olano and Manocha 1998, *Appearance-Preserving
-    /// Simplification*).
-    pub(super) fn mapped(&self, textures: &Textures, normals: Handle<Texture>, scale: f32) -> Self {
+    /// Simplification*). The second of them goes `against_v`, or else counter-clockwise of the first: where texture
+    /// coordinates are mirrored these are opposite.
+    pub(super) fn mapped(
+        &self,
+        textures: &Textures,
+        normals: Handle<Texture>,
+        scale: f32,
+        against_v: bool,
+    ) -> Self {
         let [x, y, z] = textures.eval(normals, self.at).map(|v| 2.0 * v - 1.0).to_array();
+        let [_, t] = self.axes();
+        let y = if against_v && t.dot(self.dp_duv[1]) > 0.0 { -y } else { y };
         self.tilted(Vec3::new(x * scale, y * scale, z))
     }
 

@@ -48,11 +48,33 @@ fn heights_tilt_as_hills_do() {
 fn colours_are_coordinates_of_the_normal() {
     let mut textures = Textures::default();
     let flat = textures.constant(Rgb::new(0.5, 0.5, 1.0));
-    assert_eq!(floor(Vec3::Z).mapped(&textures, flat, 1.0).frame, floor(Vec3::Z).frame);
+    assert_eq!(floor(Vec3::Z).mapped(&textures, flat, 1.0, false).frame, floor(Vec3::Z).frame);
     let tilted = textures.constant(Rgb::new(0.8, 0.3, 0.9));
-    let found = floor(Vec3::Z).mapped(&textures, tilted, 0.5);
+    let found = floor(Vec3::Z).mapped(&textures, tilted, 0.5, false);
     assert!((found.frame.n - Vec3::new(0.3, -0.2, 0.8).normalize()).length() < 1e-6);
     assert!(is_right_handed(&found.frame));
+}
+
+/// Half of many models wears the other half's image: what rises towards its upper edge does so on both.
+#[test]
+fn maps_against_v_follow_mirrored_coordinates() {
+    let mut textures = Textures::default();
+    let tilted = textures.constant(Rgb::new(0.8, 0.3, 0.9));
+    for (du, dv) in [(2.0, 3.0), (2.0, -3.0), (-2.0, 3.0), (-2.0, -3.0)] {
+        let dp_duv = [Vec3::X * du, Vec3::Y * dv];
+        let place = Surface::oriented(Vec3::Z, Vec3::Z, Vec2::ZERO, dp_duv);
+        // Red says 0.6 along u, green −0.4 against v.
+        let against_v = Vec3::new(0.6f32.copysign(du), 0.4f32.copysign(dv), 0.8).normalize();
+        let found = place.mapped(&textures, tilted, 1.0, true);
+        assert!((found.frame.n - against_v).length() < 1e-6 && is_right_handed(&found.frame), "{found:?}");
+        let behind = place.flipped().mapped(&textures, tilted, 1.0, true);
+        let expected = Vec3::new(against_v.x, against_v.y, -against_v.z);
+        assert!((behind.frame.n - expected).length() < 1e-6, "{behind:?}");
+        // Counter-clockwise of the first is all that the other kind asks for.
+        let square = Vec3::new(0.6f32.copysign(du), (-0.4f32).copysign(-du), 0.8).normalize();
+        let found = place.mapped(&textures, tilted, 1.0, false);
+        assert!((found.frame.n - square).length() < 1e-6, "{found:?}");
+    }
 }
 
 #[test]
@@ -64,7 +86,7 @@ fn normals_stay_above_the_geometry() {
         let normals = textures.constant(Rgb::from(color.to_array()));
         let place = floor(warp::square_to_cosine_hemisphere(u(0.37)).normalize());
         for place in [place, place.flipped()] {
-            let found = place.mapped(&textures, normals, 1.0);
+            let found = place.mapped(&textures, normals, 1.0, false);
             assert!(found.frame.n.dot(place.ng) > 0.01, "{found:?}");
             assert!(is_right_handed(&found.frame), "{found:?}");
         }

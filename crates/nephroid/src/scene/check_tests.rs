@@ -1,5 +1,5 @@
-use super::check::check;
 use super::Scene;
+use super::check::check;
 use crate::camera::{Camera, FovAxis, Projection};
 use crate::color::Rgb;
 use crate::film::{FilmSettings, Filter};

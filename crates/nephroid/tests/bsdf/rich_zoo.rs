@@ -183,7 +183,7 @@ impl Zoo {
         self.add_rich_case(
             "opaque blend in maps",
             10,
-            Material::NormalMap { normals: half, scale: 0.0, inside },
+            Material::NormalMap { normals: half, scale: 0.0, against_v: false, inside },
         );
         self.add_rich_case("opaque bumps", 10, Material::BumpMap { heights: half, scale: 1.0, inside: gold });
     }
