@@ -74,7 +74,7 @@ pub struct SceneArgs {
     /// Set a $parameter of the scene
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
     pub defines: Vec<(String, String)>,
-    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each
+    /// Leave out what cannot be rendered yet and properties that nobody knows, with a warning each
     #[arg(long)]
     pub lenient: bool,
     #[command(flatten)]

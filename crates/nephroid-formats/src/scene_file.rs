@@ -15,8 +15,8 @@ use crate::vfs::Files;
 pub struct Options {
     /// Values for the scene's `$parameters`, before its own defaults.
     pub defines: Vec<(String, String)>,
-    /// Leave out shapes, lights and media that cannot be rendered yet, with a warning each; else
-    /// they are errors.
+    /// Leave out shapes, lights and media that cannot be rendered yet, and properties that nobody knows, with a warning each;
+    /// else they are errors.
     pub lenient: bool,
 }
 

@@ -18,7 +18,7 @@ fn vol(value: f32, end: f32) -> Vec<u8> {
 fn check(content: &str, expected: &str) {
     let files = MemoryFiles::default()
         .with("good.vol", vol(1.0, 1.0))
-        .with("negative.vol", vol(-1.0, 1.0))
+        .with("infinite.vol", vol(f32::INFINITY, 1.0))
         .with("flat.vol", vol(1.0, 0.0))
         .with("short.vol", &vol(1.0, 1.0)[..50])
         .with("text.vol", "density");
@@ -145,8 +145,8 @@ fn broken_grids() {
         "s.xml:3:32: error: short.vol: the header promises 4 bytes of values, but 2 follow it",
     );
     check(
-        &grid("negative.vol", ""),
-        "s.xml:3:32: error: negative.vol: 1 of the values are negative or not finite, the first of them number 0: -1 (counted from 0)",
+        &grid("infinite.vol", ""),
+        "s.xml:3:32: error: infinite.vol: 1 of the values are not finite, the first of them number 0: inf (counted from 0)",
     );
     check(&grid("flat.vol", ""), "");
     check(

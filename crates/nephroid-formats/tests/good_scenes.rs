@@ -747,3 +747,14 @@ fn no_metal_has_a_negative_index() {
     };
     assert_eq!((*eta, file.warnings.len()), (Rgb::new(0.0, 4.0, 5.0), 1));
 }
+
+#[test]
+fn properties_that_nobody_knows_are_left_alone_by_the_lenient() {
+    let content = r#"<shape type="sphere"><boolean name="use_path_guiding" value="true"/></shape>"#;
+    let file = read_with(content, &files(), &Options { defines: Vec::new(), lenient: true });
+    let warning = file.warnings[0].to_string();
+    assert!(
+        warning.contains("warning: <shape type=\"sphere\"> has no property \"use_path_guiding\""),
+        "{warning}"
+    );
+}

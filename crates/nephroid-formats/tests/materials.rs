@@ -283,3 +283,28 @@ fn bitmaps_of_older_versions() {
     let (_, channel, _) = bitmap(r#"<string name="channel" value="g"/>"#);
     assert!(matches!(channel, Texture::Channel { channel: 1, .. }));
 }
+
+#[test]
+fn reflectances_of_phong_that_add_up_to_more_than_one_are_scaled_down() {
+    let content = r#"<bsdf type="phong"><float name="diffuse_reflectance" value="0.75"/>
+<float name="specular_reflectance" value="0.5"/></bsdf>"#;
+    let (scene, phong, warnings) = material("3.0.0", content);
+    assert_eq!(
+        warnings,
+        ["s.xml:2:13: warning: the two reflectances add up to more than 1: both are scaled down"]
+    );
+    let Material::Phong { diffuse_reflectance, specular_reflectance, .. } = phong else {
+        panic!("{phong:?}")
+    };
+    let [diffuse, specular] = [diffuse_reflectance, specular_reflectance].map(|handle| grey(&scene, handle));
+    assert!((diffuse - 0.6).abs() < 1e-6 && (specular - 0.4).abs() < 1e-6, "{diffuse} {specular}");
+}
+
+#[test]
+fn numbers_that_are_no_colour_may_come_as_a_vector() {
+    let content = r#"<bsdf type="normalmap"><texture type="rawconstant"><vector name="value" value="0.25, 0.5, 1"/></texture>
+<bsdf type="diffuse"/></bsdf>"#;
+    let (scene, map) = silent(content);
+    let Material::NormalMap { normals, .. } = map else { panic!("{map:?}") };
+    assert_eq!(scene.textures.list[normals], Texture::Constant(Rgb::new(0.25, 0.5, 1.0)));
+}

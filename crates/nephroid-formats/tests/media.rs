@@ -230,3 +230,19 @@ fn nearest_kin() {
     );
     assert_eq!(only_medium(&file.scene).phase, Phase::Isotropic);
 }
+
+#[test]
+fn values_below_zero_become_zero() {
+    let mut bytes = grey_vol();
+    let last = bytes.len() - 4;
+    bytes[last..].copy_from_slice(&(-1e-20f32).to_le_bytes());
+    let text = r#"<scene version="3.0.0"><sensor type="perspective"/><medium type="heterogeneous" id="m">
+<volume name="sigma_t" type="gridvolume"><string name="filename" value="low.vol"/></volume></medium></scene>"#;
+    let files = MemoryFiles::default().with("low.vol", bytes);
+    let file = read_scene_str("s.xml", text, &files, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(warnings(&file)[0], "s.xml:2:73: warning: low.vol: 1 values below zero become zero");
+    assert_eq!(
+        file.scene.media.grids.iter().next().expect("a grid").values,
+        GridValues::Grey(vec![1.0, 0.0])
+    );
+}

@@ -98,15 +98,17 @@ fn sizes_that_do_not_fit_the_file() {
 }
 
 #[test]
-fn values_that_no_quantity_has() {
+fn values_that_are_none() {
     let of = |values: &[f32]| read_vol(&vol(1, [4, 1, 1], 1, UNIT, &floats(values)));
     assert_eq!(
-        of(&[1.0, -0.5, f32::NAN, f32::INFINITY]),
-        Err(VolumeError::Values { count: 3, first: 1, value: -0.5 })
+        of(&[1.0, -0.5, f32::INFINITY, f32::NAN]),
+        Err(VolumeError::Values { count: 2, first: 2, value: f32::INFINITY })
     );
+    let below_zero = of(&[1.0, -0.5, -1e-45, 2.0]).expect("they are numbers");
+    assert_eq!((below_zero.values, below_zero.negative), (GridValues::Grey(vec![1.0, 0.0, 0.0, 2.0]), 2));
     assert_eq!(
         of(&[1.0, 2.0, 3.0, f32::NEG_INFINITY]).expect_err("infinite").to_string(),
-        "1 of the values are negative or not finite, the first of them number 3: -inf (counted from 0)"
+        "1 of the values are not finite, the first of them number 3: -inf (counted from 0)"
     );
     assert!(of(&[0.0, -0.0, f32::MIN_POSITIVE, f32::MAX]).is_ok());
     let half_nan = 0x7e00u16.to_le_bytes();

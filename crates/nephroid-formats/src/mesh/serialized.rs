@@ -16,7 +16,6 @@ const HAS_NORMALS: u32 = 0x0001;
 const HAS_UVS: u32 = 0x0002;
 const HAS_COLORS: u32 = 0x0008;
 const FACE_NORMALS: u32 = 0x0010;
-const SINGLE: u32 = 0x1000;
 const DOUBLE: u32 = 0x2000;
 
 /// Deflate packs no denser.
@@ -43,9 +42,10 @@ pub fn read_serialized(bytes: &[u8], shape_index: u32, options: MeshOptions) -> 
     }
     let vertices = u64::from_le_bytes(stream.bytes()?);
     let triangles = u64::from_le_bytes(stream.bytes()?);
-    if flags & (SINGLE | DOUBLE) == 0 || vertices > u64::from(u32::MAX) {
+    if vertices > u64::from(u32::MAX) {
         return Err(MeshError::new("its header makes no sense"));
     }
+    // Not all files say that they are of single precision (0x1000).
     let double = flags & DOUBLE != 0;
     let mut list = |width: usize, wanted: bool| -> Result<Vec<f32>, MeshError> {
         if wanted { stream.floats(vertices, width, double) } else { Ok(Vec::new()) }
@@ -168,6 +168,7 @@ mod tests {
     use flate2::write::ZlibEncoder;
     use std::io::Write;
 
+    const SINGLE: u32 = 0x1000;
     const PLAIN: MeshOptions = MeshOptions { face_normals: false, flip_tex_coords: false };
 
     /// A quad whose corners lie at this height.
@@ -217,7 +218,7 @@ mod tests {
 
     #[test]
     fn both_versions_and_precisions_are_read() {
-        for (version, precision) in [(3, SINGLE), (4, SINGLE), (3, DOUBLE), (4, DOUBLE)] {
+        for (version, precision) in [(3, 0), (3, SINGLE), (4, SINGLE), (3, DOUBLE), (4, DOUBLE)] {
             let all = HAS_NORMALS | HAS_UVS | HAS_COLORS | precision;
             let bytes = file(version, &[part(version, precision, 1.0), part(version, all, 2.0)]);
             let first = read_serialized(&bytes, 0, PLAIN).expect("the first").mesh;

@@ -45,11 +45,7 @@ impl<'t> Reader<'t> {
                 return Some(handle);
             }
             "diffuse" => Material::Diffuse { reflectance: self.reflectance(&plugin, "reflectance", 0.5) },
-            "phong" => Material::Phong {
-                diffuse_reflectance: self.reflectance(&plugin, "diffuse_reflectance", 0.5),
-                specular_reflectance: self.reflectance(&plugin, "specular_reflectance", 0.2),
-                exponent: plugin.float("exponent", 30.0),
-            },
+            "phong" => self.phong(&plugin),
             "difftrans" => Material::DiffuseTransmission {
                 reflectance: self.store_texture(plugin.location(), Texture::Constant(Rgb::BLACK)),
                 transmittance: self.reflectance(&plugin, "transmittance", 0.5),
@@ -97,6 +93,28 @@ impl<'t> Reader<'t> {
 
     fn reflectance(&mut self, plugin: &Plugin<'t>, name: &'static str, default: f32) -> Handle<Texture> {
         self.texture_property(plugin, name, default, Role::Reflectance)
+    }
+
+    /// Both of its colours are scaled down where they add up to more than one, as Mitsuba does: textures where they are looked
+    /// up, plain colours here.
+    fn phong(&mut self, plugin: &Plugin<'t>) -> Material {
+        let mut diffuse_reflectance = self.reflectance(plugin, "diffuse_reflectance", 0.5);
+        let mut specular_reflectance = self.reflectance(plugin, "specular_reflectance", 0.2);
+        let colors = [diffuse_reflectance, specular_reflectance].map(|handle| &self.textures.list[handle]);
+        if let [&Texture::Constant(diffuse), &Texture::Constant(specular)] = colors {
+            let most = (diffuse + specular).max_channel();
+            if most > 1.0 && most.is_finite() {
+                let message = "the two reflectances add up to more than 1: both are scaled down";
+                self.log.warn(plugin.location(), message);
+                [diffuse_reflectance, specular_reflectance] = [diffuse, specular]
+                    .map(|color| self.store_texture(plugin.location(), Texture::Constant(color / most)));
+            }
+        }
+        Material::Phong {
+            diffuse_reflectance,
+            specular_reflectance,
+            exponent: plugin.float("exponent", 30.0),
+        }
     }
 
     fn dielectric(&mut self, plugin: &Plugin<'t>) -> Material {

@@ -17,12 +17,14 @@ pub(super) struct Plugin<'t> {
     pub(super) properties: Vec<Property<'t>>,
     /// Every name that was asked for: those that are proposed for a wrong one.
     asked: RefCell<Vec<&'static str>>,
+    /// Whether properties that nobody knows are left alone.
+    lenient: bool,
     log: &'t Log,
 }
 
 impl<'t> Plugin<'t> {
     /// Reads an element's properties; what is wrong with them goes to the log.
-    pub(super) fn new(element: &'t Element, ids: &Ids<'t>, log: &'t Log) -> Self {
+    pub(super) fn new(element: &'t Element, ids: &Ids<'t>, lenient: bool, log: &'t Log) -> Self {
         element.allow_attributes(&["type", "id", "name", "version"], log);
         let kind = element.require("type", log).map_or("", |a| a.value.as_str());
         // Where files do not differ by case, neither do Mitsuba's plugins.
@@ -44,7 +46,9 @@ impl<'t> Plugin<'t> {
             }
             properties.push(property);
         }
-        Self { element, kind, properties, asked: RefCell::new(Vec::new()), log }
+        // The programs of old took a name that they did not know for a mistake of no consequence.
+        let lenient = lenient || element.is_legacy;
+        Self { element, kind, properties, asked: RefCell::new(Vec::new()), lenient, log }
     }
 
     pub(super) fn id(&self) -> Option<&'t str> {
@@ -179,6 +183,11 @@ impl<'t> Plugin<'t> {
         }
     }
 
+    /// Whether a property is there and a point or a vector.
+    pub(super) fn is_vector(&self, name: &str) -> bool {
+        self.properties.iter().any(|p| p.name == name && matches!(p.value, Value::Vector(_)))
+    }
+
     pub(super) fn vector(&self, name: &'static str) -> Option<Vec3> {
         let property = self.property(name)?;
         match property.value {
@@ -232,8 +241,8 @@ impl<'t> Plugin<'t> {
         }
     }
 
-    /// Complains about properties nobody asked for: an error if no plugin has one of that name, a
-    /// warning if another plugin has.
+    /// Complains about properties nobody asked for: an error if no plugin has one of that name, unless the caller is
+    /// lenient or the file is old; a warning if another plugin has.
     pub(super) fn finish(&self) {
         self.complain(true);
     }
@@ -258,11 +267,9 @@ impl<'t> Plugin<'t> {
             } else if !property_is_known(name) {
                 let asked = self.asked.borrow();
                 let known = || asked.iter().copied().filter(|name| !name.is_empty());
-                let mut message = Diagnostic::error(
-                    &property.name_location,
-                    format!("{owner} has no property \"{}\"", shortened(name)),
-                )
-                .did_you_mean(name, known());
+                let message = format!("{owner} has no property \"{}\"", shortened(name));
+                let severity = if self.lenient { Diagnostic::warning } else { Diagnostic::error };
+                let mut message = severity(&property.name_location, message).did_you_mean(name, known());
                 if message.hint.is_none() {
                     message = message.did_you_mean(name, PROPERTY_NAMES.iter().copied());
                 }

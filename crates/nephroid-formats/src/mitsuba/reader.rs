@@ -109,7 +109,7 @@ impl<'t> Reader<'t> {
     }
 
     pub(super) fn plugin(&self, element: &'t Element) -> Plugin<'t> {
-        Plugin::new(element, self.ids, self.log)
+        Plugin::new(element, self.ids, self.lenient, self.log)
     }
 
     /// The bytes of a file that the scene names, and the path it was found at.

@@ -144,6 +144,10 @@ impl<'t> Reader<'t> {
             "mesh_attribute" => self.mesh_attribute(&plugin),
             "vertexcolors" => Texture::VertexColor,
             "scale" => self.scaled(&plugin)?,
+            // Numbers that are no colour may come as a vector.
+            "rawconstant" if plugin.is_vector("value") => {
+                Texture::Constant(plugin.vector("value").map_or(Rgb::WHITE, |v| Rgb::from(v.to_array())))
+            }
             "rawconstant" | "uniform" => {
                 Texture::Constant(self.color_property(&plugin, "value", 1.0, Role::Index))
             }

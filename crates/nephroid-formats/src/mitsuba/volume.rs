@@ -60,7 +60,11 @@ impl<'t> Reader<'t> {
             None => match read_vol(&bytes) {
                 Ok(file) => {
                     let to_bounds = file.to_bounds().map_err(|error| format!("{}: {error}", path.display()));
-                    let VolumeFile { size, values, .. } = file;
+                    let VolumeFile { size, values, negative, .. } = file;
+                    if negative > 0 {
+                        let message = format!("{}: {negative} values below zero become zero", path.display());
+                        self.log.warn(at, message);
+                    }
                     let handle =
                         self.media.grids.push(Grid { name: path.display().to_string(), size, values });
                     self.origins.grids.push(at.clone());

@@ -108,7 +108,7 @@ impl Writer<'_, '_> {
                 self.inside(second);
             }
             Material::NormalMap { normals, scale, inside, .. } => {
-                self.tilted(id, normals, scale, inside, false)
+                self.tilted(id, normals, scale, inside, false);
             }
             Material::BumpMap { heights, scale, inside } => self.tilted(id, heights, scale, inside, true),
             Material::Dispersive { inside, .. } => {

@@ -17,6 +17,8 @@ pub struct VolumeFile {
     pub values: GridValues,
     /// Two opposite corners of the box, as they stand in the file.
     pub bounds: [Vec3; 2],
+    /// How many of the values are below zero in the file, as simulations and filters leave them. They are zero here.
+    pub negative: usize,
 }
 
 impl VolumeFile {
@@ -68,9 +70,9 @@ pub enum VolumeError {
     /// More bytes than the header promises.
     #[error("{0} bytes too many: the file goes on behind the last value")]
     TooLong(u128),
-    /// Values that no quantity of a medium has.
+    /// Values that are none.
     #[error(
-        "{count} of the values are negative or not finite, the first of them number {first}: {value} (counted from 0)"
+        "{count} of the values are not finite, the first of them number {first}: {value} (counted from 0)"
     )]
     Values {
         /// How many.

@@ -22,8 +22,7 @@ const HEADER_BYTES: usize = 48;
 ///
 /// # Errors
 ///
-/// Another kind of file, another length than its header asks for, or a value that is negative or not
-/// finite.
+/// Another kind of file, another length than its header asks for, or a value that is not finite.
 pub fn read_vol(bytes: &[u8]) -> Result<VolumeFile, VolumeError> {
     if !bytes.starts_with(b"VOL") {
         return Err(VolumeError::Magic);
@@ -55,14 +54,16 @@ pub fn read_vol(bytes: &[u8]) -> Result<VolumeFile, VolumeError> {
     if promised < found as u128 {
         return Err(VolumeError::TooLong(found as u128 - promised));
     }
-    let values = encoding.decode(body);
+    let mut values = encoding.decode(body);
     check(&values)?;
+    let below = values.iter_mut().filter(|value| **value < 0.0);
+    let negative = below.map(|value| *value = 0.0).count();
     let values = match channels {
         1 => GridValues::Grey(values),
         _ => GridValues::Rgb(values.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect()),
     };
     let corner = |at: usize| Vec3::new(float(at), float(at + 4), float(at + 8));
-    Ok(VolumeFile { size, values, bounds: [corner(24), corner(36)] })
+    Ok(VolumeFile { size, values, bounds: [corner(24), corner(36)], negative })
 }
 
 fn four(bytes: &[u8], at: usize) -> [u8; 4] {
@@ -70,7 +71,7 @@ fn four(bytes: &[u8], at: usize) -> [u8; 4] {
 }
 
 fn check(values: &[f32]) -> Result<(), VolumeError> {
-    let is_bad = |v: &f32| !v.is_finite() || *v < 0.0;
+    let is_bad = |v: &f32| !v.is_finite();
     match values.iter().position(is_bad) {
         None => Ok(()),
         Some(first) => {
