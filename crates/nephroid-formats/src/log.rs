@@ -1,6 +1,8 @@
 use std::cell::RefCell;
+use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Location, Severity};
+use crate::mesh::{MeshError, MeshFile};
 
 /// Nobody reads more messages than this.
 const MAX_MESSAGES: usize = 500;
@@ -45,6 +47,39 @@ impl Log {
         } else {
             let message = Diagnostic::error(at, format!("{what} cannot be rendered yet"));
             self.push(message.hint("--lenient leaves it out"));
+        }
+    }
+
+    /// Says what is wrong with a mesh that was read from a file. One without any area is only left out.
+    pub(crate) fn mesh(
+        &self,
+        at: &Location,
+        path: &Path,
+        read: Result<MeshFile, MeshError>,
+    ) -> Option<MeshFile> {
+        match read {
+            Ok(file) => {
+                self.degenerate(at, &path.display().to_string(), file.degenerate);
+                Some(file)
+            }
+            Err(error) => {
+                let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
+                let message = format!("{}{line}: {}", path.display(), error.message);
+                if error.is_flat {
+                    self.warn(at, format!("{message}, and it is left out"));
+                } else {
+                    self.error(at, message);
+                }
+                None
+            }
+        }
+    }
+
+    /// Says how many triangles of a mesh are left out, if any.
+    pub(crate) fn degenerate(&self, at: &Location, name: &str, count: usize) {
+        if count > 0 {
+            let triangles = if count == 1 { "triangle" } else { "triangles" };
+            self.warn(at, format!("{name}: left out {count} {triangles} without area"));
         }
     }
 

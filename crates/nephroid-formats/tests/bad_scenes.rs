@@ -93,6 +93,10 @@ s.xml:1:1: error: the scene has no <sensor>; add <sensor type="perspective"> wit
         r#"<scene version="3.0.0"/>"#,
         r#"s.xml:1:1: error: the scene has no <sensor>; add <sensor type="perspective"> with a <film>"#,
     );
+    check_whole(
+        r#"<scene version="3.0.0"><shape type="plane"/></scene>"#,
+        r#"s.xml:1:1: error: the scene has no <sensor>; add <sensor type="perspective"> with a <film>"#,
+    );
     check(r#"<shape type="sphere">stray words</shape>"#, r#"s.xml:2:22: error: unexpected text "stray""#);
     check(r#"<shpae type="sphere"/>"#, r#"s.xml:2:1: error: unknown element <shpae>; did you mean "shape"?"#);
     check(r#"<float name="x" value="1"/>"#, "s.xml:2:1: error: <float> has no place in <scene>");

@@ -758,3 +758,27 @@ fn properties_that_nobody_knows_are_left_alone_by_the_lenient() {
         "{warning}"
     );
 }
+
+#[test]
+fn a_group_keeps_what_has_an_area() {
+    let files = files().with("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    let group = |more: &str| {
+        format!(
+            r#"<shape type="shapegroup" id="g"><shape type="obj"><string name="filename" value="flat.obj"/></shape>{more}</shape>
+<shape type="instance"><ref id="g"/></shape>"#
+        )
+    };
+    let file = read_with(&group(r#"<shape type="disk"/>"#), &files, &Options::default());
+    assert_eq!((file.scene.instances.len(), file.scene.all_shapes().count()), (1, 1));
+    let file = read_with(&group(""), &files, &Options::default());
+    let last = file.warnings.last().expect("it is said").message.clone();
+    assert!(file.scene.instances.is_empty() && last.contains("its instances show nothing"), "{last}");
+}
+
+#[test]
+fn lamps_that_no_shape_has_are_told() {
+    let content = r#"<emitter type="area" id="a"/><emitter type="area" id="b"/><shape type="disk"><ref id="a"/></shape>"#;
+    let file = read_with(content, &files(), &Options::default());
+    let messages: Vec<&str> = file.warnings.iter().map(|w| w.message.as_str()).collect();
+    assert_eq!(messages, ["no shape refers to the emitter \"b\""]);
+}

@@ -397,6 +397,11 @@ fn spots_projectors_and_goniometric_lights() {
     let LightKind::Spot { to_world, cutoff_deg, beam_width_deg, .. } = spot else { panic!("{spot:?}") };
     assert_eq!((cutoff_deg, beam_width_deg), (30.0, 25.0));
     assert_eq!((to_world.point(Vec3::ZERO), to_world.vector(Vec3::Z)), (Vec3::Y, Vec3::X));
+    // All of a cone of 60° fades, and half of its 2π (1 − cos 60°) sr count.
+    let of_power =
+        "LightSource \"spot\" \"float coneangle\" 60 \"float conedeltaangle\" 60 \"float power\" 1.5707964";
+    let LightKind::Spot { intensity, .. } = light(of_power).kind else { panic!("no spot") };
+    near(intensity, [1.0; 3], 1e-6);
     let projector =
         light("LightSource \"projection\" \"string filename\" \"grey.png\" \"float fov\" 45").kind;
     assert!(matches!(projector, LightKind::Projector { fov_deg: 45.0, .. }), "{projector:?}");
@@ -591,6 +596,7 @@ fn what_has_no_size_is_left_out() {
         warnings,
         [
             "s.pbrt:2:16: warning: Scale flattens space: what it would hold is left out; this is told once",
+            "s.pbrt:3:24: warning: Scale flattens space: what it would hold is left out",
             "s.pbrt:4:16: warning: no face of the \"trianglemesh\" has an area, and it is left out"
         ]
     );
@@ -617,4 +623,13 @@ fn spellings_of_version_3() {
     assert_eq!(file.scene.film.filter, Filter::Tent { radius: 1.5 });
     let LightKind::Environment { scale, .. } = file.scene.lights[0].kind else { panic!("a sky") };
     assert_eq!((scale, file.warnings.len()), (2.0, 2));
+}
+
+#[test]
+fn older_files_say_alpha_of_a_gaussian() {
+    let file = read_whole(
+        "PixelFilter \"gaussian\" \"float alpha\" 8 Camera \"perspective\" WorldBegin",
+        &Options::default(),
+    );
+    assert_eq!(file.scene.film.filter, Filter::Gaussian { std_dev: 0.25 });
 }

@@ -1,6 +1,6 @@
 //! How surfaces scatter: metallic-roughness with its extensions, and specular-glossiness.
 
-use nephroid::color::Rgb;
+use nephroid::color::{Rgb, Wavelength};
 use nephroid::handle::Handle;
 use nephroid::material::{Dispersion, Material, MetallicRoughness};
 use nephroid::math::real::ln;
@@ -11,6 +11,9 @@ use super::item::Item;
 use super::material::factors;
 use super::reader::Reader;
 use super::texture::Part;
+
+/// The least index of glass for any wavelength.
+const LEAST_IOR: f32 = 1.001;
 
 /// What dielectrics of the index 1.5 reflect straight on.
 const USUAL_REFLECTANCE: f32 = 0.04;
@@ -195,7 +198,16 @@ fn dispersion(material: Item, ior: f32) -> Option<Dispersion> {
     if strength < 0.0 {
         extension.error("\"dispersion\" must not be negative");
     }
-    (strength > 0.0).then(|| Dispersion::from_abbe(ior, 20.0 / strength as f32))
+    let of = |strength: f32| Dispersion::from_abbe(ior, 20.0 / strength);
+    // Light of long waves is bent less the more glass disperses, in proportion; it must be bent at all.
+    let red = Wavelength::from_nm(Wavelength::LONGEST_NM);
+    let most = (ior - LEAST_IOR) / (ior - of(1.0).ior(red));
+    if strength as f32 > most {
+        extension.warn(format!(
+            "glass of the index {ior} cannot have a \"dispersion\" above {most:.1}, which is taken"
+        ));
+    }
+    (strength > 0.0).then(|| of((strength as f32).min(most)))
 }
 
 /// A factor between 0 and 1, in all channels.

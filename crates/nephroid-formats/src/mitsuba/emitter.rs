@@ -13,6 +13,7 @@ use super::properties::Plugin;
 use super::reader::Reader;
 use crate::diagnostic::Diagnostic;
 use crate::ies::read_ies;
+use crate::log::shortened;
 
 /// Half of the angle of the spot that stands for a beam.
 const BEAM_DEG: f32 = 0.1;
@@ -60,6 +61,17 @@ impl<'t> Reader<'t> {
         if let Some(kind) = kind {
             self.origins.lights.push(plugin.location().clone());
             self.lights.push(Light { name: plugin.name(), kind, medium });
+        }
+    }
+
+    /// Says which lamps no shape refers to.
+    pub(super) fn warn_of_unused_lamps(&self, elements: &[Element]) {
+        let lamps = elements.iter().filter(|e| e.tag == "emitter" && e.value_of("type") == Some("area"));
+        for (id, element) in lamps.filter_map(|element| Some((element.value_of("id")?, element))) {
+            if !self.lamps_shown.contains(id) {
+                let message = format!("no shape refers to the emitter \"{}\"", shortened(id));
+                self.log.warn(&element.location, message);
+            }
         }
     }
 

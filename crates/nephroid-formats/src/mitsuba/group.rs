@@ -39,39 +39,34 @@ impl<'t> Reader<'t> {
             return None;
         }
         let (mut shapes, mut places) = (Vec::new(), Vec::new());
-        let mut failed = false;
         for (_, child) in children {
             let child = self.plugin(child);
             if child.kind == "shapegroup" {
                 let message = "a shapegroup cannot hold another, but an instance of one";
                 self.log.error(child.location(), message);
-                failed = true;
                 continue;
             }
             if child.kind == "instance" {
-                match self.shapes_of_instance(&child, shapes.len()) {
-                    Some(more) => {
-                        places.resize(places.len() + more.len(), child.location().clone());
-                        shapes.extend(more);
-                    }
-                    None => failed = true,
+                if let Some(more) = self.shapes_of_instance(&child, shapes.len()) {
+                    places.resize(places.len() + more.len(), child.location().clone());
+                    shapes.extend(more);
                 }
                 continue;
             }
-            let Some(shape) = self.surface(&child) else {
-                failed = true;
-                continue;
-            };
+            let Some(shape) = self.surface(&child) else { continue };
             if shape.emission.is_some() {
                 let message = "a shape of a shapegroup cannot emit light; put the lamp beside the instances";
                 self.log.error(child.location(), message);
-                failed = true;
             }
             shapes.push(shape);
             places.push(child.location().clone());
         }
-        // With --lenient a shape can be left out, and then the group is what is left.
-        if shapes.is_empty() || (failed && !self.lenient) {
+        // What failed has its message, and is either an error, which ends the reading, or left out of the group.
+        if shapes.is_empty() {
+            if !self.log.has_errors() {
+                let message = "nothing is left of the shapegroup: its instances show nothing";
+                self.log.warn(plugin.location(), message);
+            }
             return None;
         }
         self.shapes_of_groups.append(&mut places);

@@ -37,6 +37,7 @@ use nephroid::scene::Scene;
 
 use self::document::{Document, Element};
 use self::reader::Reader;
+use self::sensor::no_sensor;
 use self::value::Ids;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::fit::Fitted;
@@ -88,6 +89,7 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let sensor = reader.sensor(&document.elements);
     reader.content(&document.elements);
     reader.warn_of_unused_groups();
+    reader.warn_of_unused_lamps(&document.elements);
     let sensor = sensor?;
     let Reader { textures, materials, meshes, shapes, groups, instances, lights, media, mut origins, .. } =
         reader;
@@ -98,6 +100,10 @@ fn interpret(document: &Document, files: &dyn Files, options: &Options, log: &Lo
     let fitted = Fitted::default();
     let mut file = SceneFile { scene, integrator, sample_count, warnings: Vec::new(), origins, fitted };
     file.fit(Fitted { camera: sensor.is_missing, sky: false });
+    if sensor.is_missing && !file.fitted.camera {
+        // Nothing has an end, so that nothing can be seen whole.
+        log.push(no_sensor(&document.root));
+    }
     Some(file)
 }
 

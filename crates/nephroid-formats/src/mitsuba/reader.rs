@@ -67,6 +67,8 @@ pub(super) struct Reader<'t> {
     pub(super) grid_of: BTreeMap<PathBuf, StoredGrid>,
     /// The material of shapes without one, and of lamps without one.
     pub(super) default_materials: [Option<Handle<Material>>; 2],
+    /// The ids of emitters that shapes refer to.
+    pub(super) lamps_shown: BTreeSet<&'t str>,
     nesting: usize,
 }
 
@@ -104,6 +106,7 @@ impl<'t> Reader<'t> {
             mesh_of: BTreeMap::new(),
             grid_of: BTreeMap::new(),
             default_materials: [None; 2],
+            lamps_shown: BTreeSet::new(),
             nesting: 0,
         }
     }

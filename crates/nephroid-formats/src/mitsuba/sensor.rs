@@ -8,7 +8,7 @@ use super::document::Element;
 use super::names::{FILMS_LATER, FILTERS_LATER, SAMPLERS, SENSORS_LATER};
 use super::properties::Plugin;
 use super::reader::Reader;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Location};
 use crate::fit;
 
 /// Longest side of a picture in pixels.
@@ -31,6 +31,12 @@ impl Sensor {
     }
 }
 
+/// What is wrong with a scene without a sensor, if none can be fitted to it.
+pub(super) fn no_sensor(scene: &Location) -> Diagnostic {
+    Diagnostic::error(scene, "the scene has no <sensor>")
+        .hint("add <sensor type=\"perspective\"> with a <film>")
+}
+
 impl<'t> Reader<'t> {
     /// The sensor that takes the picture. `None` if the log says why.
     pub(super) fn sensor(&mut self, elements: &'t [Element]) -> Option<Sensor> {
@@ -39,8 +45,7 @@ impl<'t> Reader<'t> {
             if elements.iter().any(|element| element.tag == "shape") {
                 return Some(Sensor::fitted());
             }
-            let message = Diagnostic::error(&self.origins.scene, "the scene has no <sensor>");
-            self.log.push(message.hint("add <sensor type=\"perspective\"> with a <film>"));
+            self.log.push(no_sensor(&self.origins.scene));
             return None;
         };
         if let Some(second) = sensors.next() {

@@ -111,6 +111,7 @@ impl<'t> Reader<'t> {
     /// The radiance of an area emitter inside a shape, and the medium that its light starts in.
     fn emission(&mut self, shape: &Plugin<'t>, boundary: &mut Boundary) -> Option<Handle<Texture>> {
         let plugin = self.plugin(shape.only_object("emitter")?);
+        self.lamps_shown.extend(plugin.id());
         if plugin.kind == "directionalarea" {
             let message = "emitter \"directionalarea\" cannot be rendered yet; \"area\" of the same power stands for it";
             self.log.warn(plugin.location(), message);
@@ -160,28 +161,9 @@ impl<'t> Reader<'t> {
             "ply" => read_ply(&bytes, options),
             _ => read_serialized(&bytes, number, options),
         };
-        match read {
-            Ok(file) => {
-                if file.degenerate > 0 {
-                    let faces = if file.degenerate == 1 { "triangle" } else { "triangles" };
-                    let message =
-                        format!("{}: left out {} {faces} without area", path.display(), file.degenerate);
-                    self.log.warn(at, message);
-                }
-                let handle = self.meshes.push(file.mesh);
-                self.mesh_of.insert(key, handle);
-                Some(handle)
-            }
-            Err(error) => {
-                let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
-                let message = format!("{}{line}: {}", path.display(), error.message);
-                if error.is_flat {
-                    self.log.warn(at, format!("{message}, and it is left out"));
-                } else {
-                    self.log.error(at, message);
-                }
-                None
-            }
-        }
+        let file = self.log.mesh(at, &path, read)?;
+        let handle = self.meshes.push(file.mesh);
+        self.mesh_of.insert(key, handle);
+        Some(handle)
     }
 }

@@ -3,6 +3,7 @@
 use nephroid::color::Rgb;
 use nephroid::handle::Handle;
 use nephroid::material::{Material, Metal};
+use nephroid::shape::Mesh;
 use nephroid::texture::Texture;
 
 use super::Writer;
@@ -107,7 +108,12 @@ impl Writer<'_, '_> {
                 self.inside(first);
                 self.inside(second);
             }
-            Material::NormalMap { normals, scale, inside, .. } => {
+            Material::NormalMap { normals, scale, inside, against_v } => {
+                if against_v && self.scene.meshes.iter().any(is_mirrored) {
+                    let message =
+                        "where texture coordinates are mirrored, Mitsuba turns this normal map over";
+                    self.warn(format!("{id}: {message}"));
+                }
                 self.tilted(id, normals, scale, inside, false);
             }
             Material::BumpMap { heights, scale, inside } => self.tilted(id, heights, scale, inside, true),
@@ -178,4 +184,14 @@ pub(super) fn id(material: Handle<Material>) -> String {
 /// within what Mitsuba takes. An exponent about the mirror direction is a quarter of that about the normal.
 fn alpha_of_exponent(exponent: f32) -> f32 {
     (2.0 / (4.0 * exponent + 2.0)).sqrt().clamp(1e-3, 1.0)
+}
+
+/// Whether v grows to the left of growing u somewhere on a mesh, where that of images whose first row is the upper one grows
+/// to the right.
+fn is_mirrored(mesh: &Mesh) -> bool {
+    let uv = |i: u32| mesh.uvs.get(i as usize).copied().unwrap_or_default();
+    mesh.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(uv);
+        (b - a).perp_dot(c - a) > 0.0
+    })
 }

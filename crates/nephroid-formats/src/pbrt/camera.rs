@@ -187,7 +187,11 @@ impl Reader<'_> {
                 Filter::Box
             }
             "triangle" => Filter::Tent { radius: radius(2.0) as f32 },
-            "gaussian" => Filter::Gaussian { std_dev: parameters.positive("sigma", 0.5) as f32 },
+            "gaussian" => {
+                // What the third version of pbrt says of the width: α of exp(−α x²).
+                let width = (0.5 / parameters.positive("alpha", 2.0)).sqrt();
+                Filter::Gaussian { std_dev: parameters.positive("sigma", width) as f32 }
+            }
             "mitchell" => Filter::Mitchell {
                 b: parameters.float("B", 1.0 / 3.0) as f32,
                 c: parameters.float("C", 1.0 / 3.0) as f32,
@@ -205,7 +209,7 @@ impl Reader<'_> {
             }
         };
         // Filters are as wide as high, and those with long tails have them.
-        parameters.ignore(&["xradius", "yradius", "xwidth", "ywidth", "alpha"]);
+        parameters.ignore(&["xradius", "yradius", "xwidth", "ywidth"]);
         parameters.finish();
     }
 }

@@ -119,24 +119,10 @@ impl Reader<'_> {
             return Some(*handle);
         }
         let bytes = inflated(&path, bytes, at, self.log)?;
-        match read_ply(&bytes, MeshOptions::default()) {
-            Ok(file) => {
-                self.tell_degenerate(file.degenerate, &path.display().to_string(), at);
-                let handle = self.meshes.push(oriented(file));
-                self.mesh_of.insert(path, handle);
-                Some(handle)
-            }
-            Err(error) => {
-                let line = error.line.map(|line| format!(":{line}")).unwrap_or_default();
-                let message = format!("{}{line}: {}", path.display(), error.message);
-                if error.is_flat {
-                    self.log.warn(at, format!("{message}, and it is left out"));
-                } else {
-                    self.log.error(at, message);
-                }
-                None
-            }
-        }
+        let file = self.log.mesh(at, &path, read_ply(&bytes, MeshOptions::default()))?;
+        let handle = self.meshes.push(oriented(file));
+        self.mesh_of.insert(path, handle);
+        Some(handle)
     }
 
     /// A mesh of which each index is one of a vertex.
@@ -147,7 +133,7 @@ impl Reader<'_> {
         }
         match without_degenerate(mesh, has_normals) {
             Ok(file) => {
-                self.tell_degenerate(file.degenerate, "the mesh", &parameters.at);
+                self.log.degenerate(&parameters.at, "the mesh", file.degenerate);
                 Some(self.meshes.push(oriented(file)))
             }
             Err(_) => {
@@ -156,13 +142,6 @@ impl Reader<'_> {
                 self.log.warn(&parameters.at, message);
                 None
             }
-        }
-    }
-
-    fn tell_degenerate(&self, degenerate: usize, name: &str, at: &Location) {
-        if degenerate > 0 {
-            let faces = if degenerate == 1 { "triangle" } else { "triangles" };
-            self.log.warn(at, format!("{name}: left out {degenerate} {faces} without area"));
         }
     }
 }

@@ -16,11 +16,13 @@ impl Reader<'_> {
         // What animations hide has no size. That something is not finite is another matter.
         if self.in_world && step.0.is_finite() && step.0.matrix3.determinant() == 0.0 {
             self.state.is_hidden = true;
-            if !self.told_of_hidden {
+            let has_size = step.0.matrix3 != DMat3::ZERO;
+            if has_size || !self.told_of_hidden {
                 let message = format!("{directive} flattens space: what it would hold is left out");
-                self.log.push(Diagnostic::warning(at, message).hint("this is told once"));
+                let message = Diagnostic::warning(at, message);
+                self.log.push(if has_size { message } else { message.hint("this is told once") });
             }
-            self.told_of_hidden = true;
+            self.told_of_hidden |= !has_size;
             return;
         }
         if !step.is_invertible() {

@@ -252,6 +252,9 @@ fn glass_takes_light_apart_if_it_is_thick() {
         let (file, _) = material(thickness, dispersion).good();
         assert_eq!(dispersion_of(&file), None);
     }
+    let (file, warnings) = material(1.0, 500.0).good();
+    assert!(warnings.contains("cannot have a \"dispersion\" above"), "{warnings}");
+    World::new(file.scene).expect("light of all colours is refracted");
     material(1.0, -0.1).fails_with("\"dispersion\" must not be negative");
 }
 

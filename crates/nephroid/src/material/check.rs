@@ -101,7 +101,7 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
             problems.list.extend(dispersion.problem());
             problems.stored_before("inside", materials, material, *inside);
             if materials.contains(*inside) && !bends_light(&materials[*inside]) {
-                problems.add("only a dielectric can be dispersive");
+                problems.add("only glass can be dispersive: a smooth or rough dielectric, or a metallic-roughness material that is not thin");
             }
         }
         Material::Null => {}
@@ -113,7 +113,7 @@ pub fn check(materials: &Arena<Material>, material: Handle<Material>, textures: 
 fn bends_light(material: &Material) -> bool {
     match material {
         Material::Dielectric { .. } | Material::RoughDielectric { .. } => true,
-        Material::MetallicRoughness(of) => !of.thin,
+        Material::MetallicRoughness(of) => !of.thin && of.ior > 0.0,
         _ => false,
     }
 }

@@ -125,12 +125,12 @@ pub enum Material {
         /// How the surface scatters where it is there.
         inside: Handle<Material>,
     },
-    /// Glass that takes light apart: its `int_ior` is the [`Dispersion`]'s, for paths of one wavelength; where there is none yet,
-    /// and for whoever asks for the index, it is as it says.
+    /// Glass that takes light apart: its index of refraction is the [`Dispersion`]'s, for paths of one wavelength; where there is
+    /// none yet, and for whoever asks for the index, it is as it says.
     Dispersive {
         /// The index of refraction on the side the normal points away from.
         dispersion: Dispersion,
-        /// A dielectric boundary.
+        /// A smooth or rough dielectric, or a metallic-roughness material that is not thin.
         inside: Handle<Material>,
     },
     /// A metal with a rough surface. One-sided.
