@@ -106,7 +106,7 @@ impl Binary {
         let node = |at: u32| match rest_is_left {
             true if at < count - 1 => last - at,
             true => LEAF | (at - (count - 1)),
-            false if at % 2 == 0 && at < last => at + 2,
+            false if at.is_multiple_of(2) && at < last => at + 2,
             false => LEAF | at.div_ceil(2).min(count - 1),
         };
         Self { nodes: (0..=last).map(|at| BinaryNode { area: 1.0, link: node(at) }).collect() }
