@@ -99,6 +99,19 @@ impl Binary {
         Self { nodes }
     }
 
+    /// As deep as there can be: each node has an item, and all the rest on the other side.
+    #[cfg(test)]
+    pub fn chain(count: u32, rest_is_left: bool) -> Self {
+        let last = 2 * count - 2;
+        let node = |at: u32| match rest_is_left {
+            true if at < count - 1 => last - at,
+            true => LEAF | (at - (count - 1)),
+            false if at.is_multiple_of(2) && at < last => at + 2,
+            false => LEAF | at.div_ceil(2).min(count - 1),
+        };
+        Self { nodes: (0..=last).map(|at| BinaryNode { area: 1.0, link: node(at) }).collect() }
+    }
+
     #[inline]
     pub fn content(&self, at: u32) -> Content {
         let link = self.nodes[at as usize].link;

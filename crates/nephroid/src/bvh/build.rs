@@ -34,12 +34,7 @@ impl Tree {
         if boxes.count() == 0 {
             return Self { nodes: Vec::new(), root: Child::NONE };
         }
-        let mut plan = Plan::new(Binary::clustered(work, boxes), &kind);
-        let mut needed = plan.needed(0, 0);
-        if needed.stack > DEPTH {
-            plan = Plan::new(Binary::halved(boxes), &kind);
-            needed = plan.needed(0, 0);
-        }
+        let (plan, needed) = Plan::shallow(work, boxes, &kind);
         // Nodes are aligned, and what is aligned is copied when it grows or shrinks.
         let mut tree = Self { nodes: Vec::with_capacity(needed.nodes), root: Child::NONE };
         let mut untold = 0;
@@ -132,7 +127,7 @@ struct Plan {
 /// What becomes of a binary node. Packed, as there are two for each item: in the lowest bits what leaf it is where it has
 /// one slot, one more than its [`Kind`], or zero for a node; above, three bits each, how many of `n` slots the left child
 /// gets, from `n` = 2 on, and zero where fewer slots are as good. The last is how a node of its own is shared out.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Choice(u32);
 
 impl Choice {
@@ -180,8 +175,25 @@ struct Below {
 impl Plan {
     fn new(binary: Binary, kind: &(impl Fn(u32) -> Kind + Sync)) -> Self {
         let mut choices = vec![Choice::NONE; binary.nodes.len()];
-        choose(&binary, 0, &mut choices, kind);
+        choose(&binary, 0, SHARED, &mut choices, kind);
         Self { binary, choices }
+    }
+
+    /// For at least one box, and what it needs, which a traversal's stack can hold.
+    fn shallow(
+        work: &Work<'_>,
+        boxes: &(impl Boxes + ?Sized),
+        kind: &(impl Fn(u32) -> Kind + Sync),
+    ) -> (Self, Needed) {
+        let clustered = Self::new(Binary::clustered(work, boxes), kind);
+        let needed = clustered.needed(0, 0);
+        if needed.stack <= DEPTH {
+            return (clustered, needed);
+        }
+        drop(clustered);
+        let halved = Self::new(Binary::halved(boxes), kind);
+        let needed = halved.needed(0, 0);
+        (halved, needed)
     }
 
     fn leaf_kind(&self, at: u32) -> Option<Kind> {
@@ -239,14 +251,28 @@ struct Needed {
 /// As many nodes are chosen for on one thread.
 const ALONE: usize = 1 << 14;
 
-/// Chooses for the node at `at` and all below it, of which there are as many as there is room for.
-fn choose(binary: &Binary, at: u32, choices: &mut [Choice], kind: &(impl Fn(u32) -> Kind + Sync)) -> Below {
+/// Down so many levels work is shared out, and no further: a tree over boxes that are all in one place may be as deep as it
+/// has items, and a thread's stack is not.
+const SHARED: u32 = 32;
+
+/// Chooses for the node at `at` and all below it, of which there are as many as there is room for. Down so many `levels`
+/// both sides are chosen for at once.
+fn choose(
+    binary: &Binary,
+    at: u32,
+    levels: u32,
+    choices: &mut [Choice],
+    kind: &(impl Fn(u32) -> Kind + Sync),
+) -> Below {
     if let ([own, below @ ..], Content::Inner([left, right])) = (&mut *choices, binary.content(at))
         && below.len() >= ALONE
+        && levels > 0
     {
         let (of_left, of_right) = below.split_at_mut((right - left) as usize);
-        let (of_left, of_right) =
-            rayon::join(|| choose(binary, left, of_left, kind), || choose(binary, right, of_right, kind));
+        let (of_left, of_right) = rayon::join(
+            || choose(binary, left, levels - 1, of_left, kind),
+            || choose(binary, right, levels - 1, of_right, kind),
+        );
         return own.make(binary.area(at), &of_left, &of_right);
     }
     // What has no parent yet: a node's children come after it, the left one first.
@@ -318,5 +344,42 @@ fn leaf_cost(kind: Kind) -> f32 {
     match kind {
         Kind::Triangles | Kind::Flats => LEAF_COST,
         Kind::Other => OTHER_COST,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
+    }
+
+    #[test]
+    fn a_chain_is_chosen_for_without_a_deep_stack() {
+        for rest_is_left in [false, true] {
+            let plan = || Plan::new(Binary::chain(40_000, rest_is_left), &|_| Kind::Triangles);
+            let [one, three] = [1, 3].map(|threads| on_threads(threads, plan));
+            assert!(one.needed(0, 0).stack > DEPTH);
+            assert!(one.choices == three.choices);
+            // And as where nothing is shared out.
+            let mut alone = vec![Choice::NONE; one.choices.len()];
+            choose(&one.binary, 0, 0, &mut alone, &|_| Kind::Triangles);
+            assert!(one.choices == alone);
+        }
+    }
+
+    #[test]
+    fn boxes_in_one_place_are_built_in_halves() {
+        let same = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
+        let boxes = vec![same; 3000];
+        let work = Work::silent();
+        let kind = |_| Kind::Triangles;
+        let clustered = Plan::new(Binary::clustered(&work, &boxes[..]), &kind);
+        assert!(clustered.needed(0, 0).stack > DEPTH);
+        let (_, needed) = Plan::shallow(&work, &boxes[..], &kind);
+        // Of eight children seven wait, and 3000 items are less than 8⁴.
+        assert!(needed.stack <= 7 * 4, "{}", needed.stack);
     }
 }

@@ -16,20 +16,25 @@ pub(super) struct Parted {
 /// Bins along each axis.
 const BINS: usize = 32;
 
+/// So many levels are parted by area. Where centres come closer and closer to one place there could be thousands, and below
+/// these the rest is halved as it comes.
+const LEVELS: u32 = 64;
+
 /// Orders the items and parts them until no part has more than `most`, each time where the areas of both sides, times what
 /// is in them, are least (Wald 2007, *On fast Construction of SAH-based Bounding Volume Hierarchies*,
 /// 10.1109/RT.2007.4342588). Coordinates count times `scale`. Both sides are parted at once.
 pub(super) fn part(boxes: &(impl Boxes + ?Sized), scale: f32, items: &mut [u32], most: usize) -> Parted {
-    part_from(boxes, scale, items, most, 0)
+    part_from(boxes, scale, items, most, 0, LEVELS)
 }
 
-/// The same for items that follow so many others.
+/// The same for items that follow so many others, with so many levels left.
 fn part_from(
     boxes: &(impl Boxes + ?Sized),
     scale: f32,
     items: &mut [u32],
     most: usize,
     first: usize,
+    levels: u32,
 ) -> Parted {
     if items.len() <= most {
         let whole = first..first + items.len();
@@ -41,11 +46,12 @@ fn part_from(
         bounds = bounds.union(one);
         centers = centers.with(center(&one));
     }
-    let middle = divide(boxes, scale, items, &centers);
+    let middle = if levels > 0 { divide(boxes, scale, items, &centers) } else { items.len() / 2 };
+    let levels = levels.saturating_sub(1);
     let (left, right) = items.split_at_mut(middle);
     let (left, right) = rayon::join(
-        || part_from(boxes, scale, left, most, first),
-        || part_from(boxes, scale, right, most, first + middle),
+        || part_from(boxes, scale, left, most, first, levels),
+        || part_from(boxes, scale, right, most, first + middle, levels),
     );
     let mut areas = vec![Some(scaled_area(&bounds, scale))];
     areas.extend(left.areas.into_iter().chain(right.areas));
@@ -155,6 +161,27 @@ mod tests {
             items.sort_unstable();
             assert!(items.into_iter().eq(0..5000));
         }
+    }
+
+    #[test]
+    fn the_tree_over_parts_is_never_deep() {
+        // Without any area all splits cost the same, and the first bin has but one item each time.
+        let on_line = |i: i32| Vec3::X * -(31.0f32 / 32.0).powi(i);
+        let boxes: Vec<Bounds> = (0..2700).map(|i| Bounds { min: on_line(i), max: on_line(i) }).collect();
+        let mut items: Vec<u32> = (0..2700).collect();
+        let parted = part(&boxes[..], 1.0, &mut items, 100);
+        // Nodes that are still to come, by their depth.
+        let mut waiting = vec![0];
+        let mut deepest = 0;
+        for area in &parted.areas {
+            let depth = waiting.pop().unwrap();
+            deepest = deepest.max(depth);
+            if area.is_some() {
+                waiting.extend([depth + 1; 2]);
+            }
+        }
+        // What is left by then is halved five times.
+        assert!(waiting.is_empty() && (60..=LEVELS + 5).contains(&deepest), "{deepest}");
     }
 
     #[test]

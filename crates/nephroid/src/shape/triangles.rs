@@ -21,6 +21,9 @@ pub(crate) struct TriangleLeaf(u32);
 /// Rows of a triangle.
 const ROWS: usize = 9;
 
+/// Numbers in a cache line.
+const LINE: usize = 64 / size_of::<f32>();
+
 /// What is read of a leaf, whatever it has.
 type Rows = [f32; ROWS * LANES];
 
@@ -185,9 +188,10 @@ impl Triangles {
 
     #[inline(always)]
     pub fn prefetch<L: Lanes>(&self, leaf: TriangleLeaf) {
-        if let Some(rows) = self.rows(leaf) {
-            L::prefetch(rows);
-        }
+        let (first, count) = (ROWS * leaf.first(), ROWS * leaf.count());
+        let Some(own) = self.rows.get(first..first + count) else { return };
+        // Leaves start anywhere in a cache line, so the last number may be in one more.
+        own.iter().step_by(LINE).chain(own.last()).for_each(L::prefetch);
     }
 
     /// What [`Triangle::intersect`] gives for each, to the bit.

@@ -31,7 +31,8 @@ impl World {
         Self::observed(scene, &Silent)
     }
 
-    /// The same, and tells how far the trees are: a scene of millions of triangles takes seconds.
+    /// The same, and tells how far the trees are: a scene of millions of triangles takes seconds. It cannot be
+    /// stopped: [`Observer::cancelled`] is not asked.
     ///
     /// # Errors
     /// Every problem that the scene has.

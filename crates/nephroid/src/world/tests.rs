@@ -311,6 +311,23 @@ fn a_thousand_instances_cost_one_mesh() {
     assert!(thousand < one + 1000 * 200, "{one} {thousand}");
 }
 
+/// Clustering makes a chain of them, too deep to be gone through.
+#[test]
+fn thousands_of_triangles_in_one_place_are_met() {
+    let mut scene = empty();
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let count = 4000;
+    let mesh = Mesh { positions, triangles: vec![[0, 1, 2]; count], ..Mesh::default() };
+    let mesh = scene.meshes.push(mesh);
+    scene.shapes.push(shape(&scene, Geometry::Mesh(mesh), Transform::IDENTITY));
+    let world = World::new(scene).expect("a sound scene");
+    assert_eq!(world.primitive_count(), count);
+    let ray = |x: f32| Ray::new(Vec3::new(x, 0.25, 3.0), -Vec3::Z);
+    assert_eq!(world.nearest(&ray(0.5)).map(|hit| hit.t), Some(3.0));
+    assert!(world.occluded(&ray(0.5)));
+    assert!(world.nearest(&ray(0.8)).is_none() && !world.occluded(&ray(0.8)));
+}
+
 /// A mesh that is shown at one place is moved there; at several, all but one get their own.
 #[test]
 fn meshes_are_in_memory_once_for_each_place() {
