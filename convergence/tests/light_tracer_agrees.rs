@@ -176,7 +176,8 @@ fn on_surfaces_that_images_bend() {
     let (heights, normals) = (bitmap(hills, 2.0), bitmap((0..16).map(tilts).collect(), 1.0));
     let (inside, white) = (b.diffuse(0.8), b.diffuse(0.9));
     let floor = b.scene.materials.push(Material::BumpMap { heights, scale: 0.15, inside });
-    let ball = b.scene.materials.push(Material::NormalMap { normals, scale: 0.6, inside: white });
+    let ball =
+        b.scene.materials.push(Material::NormalMap { normals, scale: 0.6, against_v: false, inside: white });
     b.shape(Geometry::Rectangle, facing(DVec3::NEG_Y, 1.5, DVec3::X, -90.0), floor);
     b.sphere(Vec3::new(-0.6, -0.3, 0.0), 0.7, ball);
     b.mesh(smooth_ball(Vec3::new(0.8, -0.3, 0.2), 0.6), white);

@@ -8,7 +8,7 @@ use nephroid::film::{Crop, FilmSettings, Filter};
 use nephroid::handle::Handle;
 use nephroid::light::LightKind;
 use nephroid::material::{Material, Metal};
-use nephroid::math::{Vec2, Vec3};
+use nephroid::math::{Vec2, Vec3, real};
 use nephroid::medium::Boundary;
 use nephroid::scene::Scene;
 use nephroid::shape::Geometry;
@@ -658,7 +658,7 @@ fn suns_and_skies_are_as_bright_as_listed() {
         (8.0, 10.0, [0.102_06, 0.088_27, 0.070_05], 0.77, [0.394_86, 0.221_33, 0.084_29], 0.08),
     ];
     for (turbidity, height, mean, of_sky, irradiance_there, of_sun) in of_mitsuba {
-        let (z, x) = (height.to_radians().sin(), height.to_radians().cos());
+        let (z, x) = real::sin_cos(height.to_radians());
         let content = format!(
             r#"<emitter type="sunsky"><float name="turbidity" value="{turbidity}"/>
             <vector name="sun_direction" x="{x}" y="0" z="{z}"/></emitter>"#
@@ -674,7 +674,7 @@ fn suns_and_skies_are_as_bright_as_listed() {
         let image = &file.scene.textures.images[image];
         let mut sum = (0.0, 0.0);
         for y in 0..image.height / 2 {
-            let weight = (std::f32::consts::PI * y as f32 / (image.height - 1) as f32).sin();
+            let weight = real::sin(std::f32::consts::PI * y as f32 / (image.height - 1) as f32);
             for x in 0..image.width {
                 sum = (sum.0 + weight * luminance(image.pixel(x, y)), sum.1 + weight);
             }
