@@ -21,7 +21,8 @@ pub fn check(read: impl Fn(&Options) -> Result<SceneFile, Diagnostics>) {
 
 fn check_scene(SceneFile { scene, origins, warnings, .. }: SceneFile) {
     assert!(warnings.iter().take(2).all(|w| !w.render(false).is_empty()));
-    let Origins { shapes, groups, instances, lights, textures, images, materials, media, grids, .. } = origins;
+    let Origins { shapes, groups, instances, lights, textures, images, materials, media, grids, .. } =
+        origins;
     assert_eq!(shapes.len(), scene.all_shapes().count());
     assert_eq!(groups.len(), scene.groups.len());
     assert_eq!(instances.len(), scene.instances.len());
